@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scenario as the file describes it: plain values, checked. What moves how in time is sim/obstacle_models.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "planner/types.hpp"
+
+namespace jink::config {
+
+using planner::Vec3;
+
+struct SphereShape {
+  double radius = 0.0;
+};
+/// Axis-aligned, centred on the moving reference point; edge lengths.
+struct BoxShape {
+  Vec3 edges = Vec3::Zero();
+};
+/// The convex hull of these points, relative to the moving reference point.
+struct VertexShape {
+  std::vector<Vec3> vertices;
+};
+using Shape = std::variant<SphereShape, BoxShape, VertexShape>;
+
+/// Constant acceleration, [Paper] Eq. (4)-(7) in exact form.
+struct LinearMotion {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 acceleration = Vec3::Zero();
+};
+/// center + (sx(sin τ + 2 sin 2τ), sy(cos τ − 2 cos 2τ), −sz sin 3τ), τ = t/slower + offset.
+struct TrefoilMotion {
+  Vec3 center = Vec3::Zero();
+  Vec3 scale = Vec3::Ones();
+  double slower = 1.0;
+  double offset = 0.0;
+};
+/// Per axis: center + amplitude · sin(2π · frequency · t + phase).
+struct SineMotion {
+  Vec3 center = Vec3::Zero();
+  Vec3 amplitude = Vec3::Zero();
+  Vec3 frequency_hz = Vec3::Zero();
+  Vec3 phase = Vec3::Zero();
+};
+/// Constant velocity, reflected at the faces of [min, max].
+struct BounceMotion {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 min = Vec3::Zero();
+  Vec3 max = Vec3::Zero();
+};
+/// Piecewise linear through points at times; still before the first and after the last.
+struct WaypointsMotion {
+  std::vector<double> times;
+  std::vector<Vec3> points;
+};
+using Motion = std::variant<LinearMotion, TrefoilMotion, SineMotion, BounceMotion, WaypointsMotion>;
+
+struct Obstacle {
+  Shape shape;
+  Motion motion;
+};
+
+/// How the world is measured: what the tracks look like.
+struct Sensing {
+  double range = planner::kInfinity;  ///< from the vehicle's centre to the obstacle's surface
+  double rate = 20.0;                 ///< Hz
+  double delay = 0.0;                 ///< from measurement to publication
+  double position_noise = 0.0;        ///< standard deviation per axis
+  double velocity_noise = 0.0;        ///< standard deviation per axis
+  double dropout = 0.0;               ///< probability that a track is missing from a message
+};
+
+struct Scenario {
+  std::string name;
+  Vec3 start = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  double time_limit = 0.0;
+  std::string vehicle_name;  ///< "inline" where the file gives a map
+  planner::VehicleLimits vehicle;
+  std::optional<planner::Box> world;
+  Sensing sensing;
+  std::vector<Obstacle> obstacles;
+};
+
+/// Reads and checks a jink-scenario/1 file. `vehicles` is the folder of vehicle files by name; empty: `vehicles/` beside
+/// the scenario's folder, then the project's own. Throws ConfigError (config/yaml.hpp) for anything that is not as
+/// the contract says: unreadable file, syntax, unknown or missing key, wrong type, value out of range, wrong format.
+Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles = {});
+
+}  // namespace jink::config
