@@ -1,0 +1,1 @@
+add_library(jink_idl INTERFACE)
