@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/mission.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "config/vehicle_reader.hpp"
+
+namespace jink::config {
+namespace {
+
+constexpr Range kCoordinate = within(1e5);
+constexpr std::size_t kMostWaypoints = 10000;
+
+bool is_integer_in(std::string_view text, const Range& range) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.empty() || !std::all_of(text.begin(), text.end(), digit)) return false;
+  return range.contains(static_cast<double>(*parse_integer(text)));
+}
+
+void check_network_address(const Value& value, std::string_view address, bool needs_host) {
+  const Range ports = closed(1, 65535);
+  const std::size_t colon = address.rfind(':');
+  if (colon == std::string_view::npos || !is_integer_in(address.substr(colon + 1), ports)) {
+    value.fail("has no valid port; expected " + std::string(needs_host ? "HOST" : "[HOST]") + ":PORT, the port in " +
+               ports.text());
+  }
+  if (needs_host && colon == 0) value.fail("has no host; expected HOST:PORT");
+}
+
+void check_serial_address(const Value& value, std::string_view address) {
+  const Range bauds = closed(1, 20'000'000);
+  const std::size_t colon = address.rfind(':');
+  if (address.size() < 2 || address.front() != '/' || colon == 1) {
+    value.fail("has no device; expected /DEVICE[:BAUD]");
+  }
+  if (colon != std::string_view::npos && !is_integer_in(address.substr(colon + 1), bauds)) {
+    value.fail("has no valid baud rate; expected /DEVICE[:BAUD], the baud rate in " + bauds.text());
+  }
+}
+
+/// MAVSDK finds a bad URL only when it connects, and then says little; here it is found with file and line.
+std::string read_connection(const Value& value) {
+  static constexpr std::array<std::string_view, 8> kSchemes = {"udp",   "udpin",  "udpout", "tcp",
+                                                               "tcpin", "tcpout", "serial", "serial_flowcontrol"};
+  std::string url = value.text();
+  const std::size_t end = url.find("://");
+  const std::string_view scheme = std::string_view(url).substr(0, end == std::string::npos ? 0 : end);
+  if (std::find(kSchemes.begin(), kSchemes.end(), scheme) == kSchemes.end()) {
+    const std::string_view near = nearest(scheme, kSchemes);
+    value.fail("is not a MAVSDK URL; expected SCHEME://ADDRESS with a scheme of " + join(kSchemes) +
+               (near.empty() ? "" : "; did you mean '" + std::string(near) + "'?"));
+  }
+  const std::string_view address = std::string_view(url).substr(end + 3);
+  if (url.find(' ') != std::string::npos) value.fail("holds a space; expected a MAVSDK URL");
+  if (scheme.starts_with("serial")) {
+    check_serial_address(value, address);
+  } else {
+    check_network_address(value, address, scheme == "udpout" || scheme == "tcp" || scheme == "tcpout");
+  }
+  return url;
+}
+
+// A waypoint counts at the height at which it is flown, see load_mission.
+planner::Vec3 read_waypoint(const Value& value, const Mission& mission) {
+  const planner::Vec3 point = value.vec3(kCoordinate);
+  planner::Vec3 flown = point;
+  flown.z() = std::max(point.z(), mission.min_height);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const Range range = closed(mission.geofence.min[axis], mission.geofence.max[axis]);
+    if (range.contains(flown[axis])) continue;
+    const bool raised = flown[axis] != point[axis];
+    value.list(3, 3)[i].fail((raised ? "raised to min_height, " + number_text(flown[axis]) + "," : std::string()) +
+                             (raised ? " " : "") + "is outside the geofence; not in " + range.text());
+  }
+  return point;
+}
+
+void read_heights(const Map& map, Mission& mission) {
+  mission.takeoff_height = map.number_or("takeoff_height", above(0, 100), mission.takeoff_height);
+  mission.min_height = map.number_or("min_height", closed(0, 1000), mission.min_height);
+  const double ceiling = mission.geofence.max.z();
+  if (mission.min_height >= ceiling) {
+    map.at("min_height", "").fail("is not below the geofence's top; not in " + below(0, ceiling).text());
+  }
+  if (mission.takeoff_height > ceiling) {
+    map.at("takeoff_height", "").fail("is above the geofence's top; not in " + above(0, ceiling).text());
+  }
+}
+
+TrackPolicy read_tracks(const Value& value) {
+  const Map map(value, {"required", "timeout_s", "coast_s"});
+  TrackPolicy tracks;
+  if (const auto required = map.find("required")) tracks.required = required->boolean();
+  tracks.timeout_s = map.number_or("timeout_s", above(0, 60), tracks.timeout_s);
+  tracks.coast_s = map.number_or("coast_s", closed(0, 60), tracks.coast_s);
+  return tracks;
+}
+
+}  // namespace
+
+Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
+  const Map map(read_document(file), {"format", "name", "connection", "vehicle", "takeoff_height", "min_height",
+                                      "waypoints", "arrival", "geofence", "dds", "tracks", "time_limit"});
+  map.require_format("jink-mission/1");
+  Mission mission;
+  mission.name = map.text("name");
+  mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
+  NamedVehicle vehicle = read_vehicle(map.at("vehicle", "the name of a vehicle or a map"), file, vehicles);
+  mission.vehicle_name = std::move(vehicle.name);
+  mission.vehicle = vehicle.limits;
+  if (const auto geofence = map.find("geofence")) mission.geofence = read_box(*geofence, kCoordinate);
+  read_heights(map, mission);
+  for (const Value& point : map.at("waypoints", "a list of [x, y, z]").list(1, kMostWaypoints)) {
+    mission.waypoints.push_back(read_waypoint(point, mission));
+  }
+  if (const auto arrival = map.find("arrival")) {
+    static constexpr std::array<std::string_view, 2> kArrivals = {"land", "hold"};
+    mission.arrival = arrival->choice(kArrivals) == 0 ? Arrival::kLand : Arrival::kHold;
+  }
+  if (const auto dds = map.find("dds")) {
+    const Map domain(*dds, {"domain"});
+    mission.dds_domain = domain.integer("domain", closed(0, 232));  // what RTPS's port numbers leave room for
+  }
+  if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
+  mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
+  return mission;
+}
+
+}  // namespace jink::config

@@ -20,20 +20,29 @@ struct TrackPolicy {
 
 struct Mission {
   std::string name;
-  std::string connection;  ///< a MAVSDK URL
-  std::string vehicle_name;
+  std::string connection;    ///< a MAVSDK URL
+  std::string vehicle_name;  ///< "inline" where the file gives a map
   planner::VehicleLimits vehicle;
   double takeoff_height = 1.5;  ///< above the ground at take-off
   double min_height = 1.0;      ///< the plan never goes below; ENU z
   std::vector<planner::Vec3> waypoints;
   Arrival arrival = Arrival::kLand;
-  planner::Box geofence;
+  planner::Box geofence;  ///< unbounded when the file has none
   int dds_domain = 0;
   TrackPolicy tracks;
   double time_limit = 300.0;
 };
 
-/// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does.
+/// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does, and finds vehicles as it does.
+///
+/// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
+/// takeoff_height, min_height, arrival, geofence (unbounded; with both min and max when given), dds.domain, tracks and
+/// each of its keys, time_limit.
+///
+/// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
+/// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. A waypoint may be lower than min_height,
+/// as the flight raises it to that; so raised it must lie in the geofence. takeoff_height and min_height
+/// must be below the geofence's top.
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles = {});
 
 }  // namespace jink::config

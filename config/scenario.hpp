@@ -21,7 +21,7 @@ struct SphereShape {
 struct BoxShape {
   Vec3 edges = Vec3::Zero();
 };
-/// The convex hull of these points, relative to the moving reference point.
+/// The convex hull of these points, relative to the moving reference point; at least one, and they may be degenerate.
 struct VertexShape {
   std::vector<Vec3> vertices;
 };
@@ -88,9 +88,17 @@ struct Scenario {
   std::vector<Obstacle> obstacles;
 };
 
-/// Reads and checks a jink-scenario/1 file. `vehicles` is the folder of vehicle files by name; empty: `vehicles/` beside
-/// the scenario's folder, then the project's own. Throws ConfigError (config/yaml.hpp) for anything that is not as
-/// the contract says: unreadable file, syntax, unknown or missing key, wrong type, value out of range, wrong format.
+/// Reads and checks a jink-scenario/1 file. `vehicles` is the folder of vehicle files by name; empty: `vehicles/`
+/// beside the scenario's folder, then the project's own (config_folder() in config/settings.hpp).
+///
+/// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
+/// velocity and acceleration of a linear one. Optional: time_limit, world (with both min and max), sensing and each of
+/// its keys. Checked: start and target lie in the world; a bounce starts between min and max, which may coincide only
+/// on an axis without velocity; waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds and
+/// accelerations 1e3 per axis, radius and edges 1e3, 10000 obstacles, 10000 points each.
+///
+/// Throws ConfigError (config/error.hpp) for anything else: unreadable file, syntax, unknown, missing or repeated key,
+/// wrong type, value out of range, wrong format, unknown vehicle.
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles = {});
 
 }  // namespace jink::config

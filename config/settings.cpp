@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/settings.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <variant>
+
+#include "config/yaml.hpp"
+
+namespace jink::config {
+namespace {
+
+using planner::Axis;
+using planner::Constraint;
+using planner::HorizonSettings;
+using planner::OptimizerSettings;
+using planner::PaperSettings;
+
+/// How a file spells the values of an enumeration, in their order.
+template <class Enum>
+constexpr auto kSpellings = nullptr;
+template <>
+constexpr std::array<std::string_view, 2> kSpellings<Constraint> = {"paper", "swept"};
+template <>
+constexpr std::array<std::string_view, 2> kSpellings<Axis> = {"world_x", "path"};
+
+template <class Section>
+struct Field {
+  std::string_view name;
+  std::variant<int Section::*, double Section::*, Constraint Section::*, Axis Section::*> member;
+  Range range;  // of numbers; of no meaning to the others
+};
+
+constexpr Range kNoRange{};
+
+// One line per parameter: that is all it takes to add one here. config/planner.yaml needs its line as well.
+constexpr Field<OptimizerSettings> kOptimizer[] = {
+    {"slaves", &OptimizerSettings::slaves, closed(1, 256)},
+    {"sharing", &OptimizerSettings::sharing, closed(0, 1000)},
+    {"population", &OptimizerSettings::population, closed(2, 100000)},
+    {"iterations", &OptimizerSettings::iterations, closed(1, 1000000)},
+    {"archive", &OptimizerSettings::archive, closed(2, 100000)},
+    {"wep_min", &OptimizerSettings::wep_min, closed(0, 1)},
+    {"wep_max", &OptimizerSettings::wep_max, closed(0, 1)},
+    {"exploitation", &OptimizerSettings::exploitation, above(0, 100)},
+    {"crowding", &OptimizerSettings::crowding, above(1, 100)},
+};
+
+constexpr Field<PaperSettings> kPaper[] = {
+    {"waypoints", &PaperSettings::waypoints, closed(3, 1000)},
+    {"constraint", &PaperSettings::constraint, kNoRange},
+    {"axis", &PaperSettings::axis, kNoRange},
+    {"steering_limit_deg", &PaperSettings::steering_limit_deg, above(0, 180)},
+    {"penalty", &PaperSettings::penalty, above(0, 1e12)},
+    {"lateral_range", &PaperSettings::lateral_range, above(0, 1000)},
+    {"narrow_gap", &PaperSettings::narrow_gap, closed(0, 100)},
+    {"narrow_altitude", &PaperSettings::narrow_altitude, closed(0, 100)},
+    {"margin", &PaperSettings::margin, closed(0, 100)},
+};
+
+constexpr Field<HorizonSettings> kHorizon[] = {
+    {"waypoints", &HorizonSettings::waypoints, closed(1, 100)},
+    {"time", &HorizonSettings::time, above(0, 600)},
+    {"step", &HorizonSettings::step, closed(0.001, 10)},
+    {"slaves", &HorizonSettings::slaves, closed(1, 256)},
+    {"sharing", &HorizonSettings::sharing, closed(0, 1000)},
+    {"population", &HorizonSettings::population, closed(2, 100000)},
+    {"generations", &HorizonSettings::generations, closed(1, 1000000)},
+    {"deadline_ms", &HorizonSettings::deadline_ms, above(0, 60000)},
+    {"lateral_range", &HorizonSettings::lateral_range, above(0, 1000)},
+    {"back_range", &HorizonSettings::back_range, closed(0, 1000)},
+    {"acceleration_share", &HorizonSettings::acceleration_share, above(0, 1)},
+    {"braking", &HorizonSettings::braking, above(0, 1000)},
+    {"margin", &HorizonSettings::margin, closed(0, 100)},
+    {"sigma_factor", &HorizonSettings::sigma_factor, closed(0, 100)},
+    {"track_acceleration", &HorizonSettings::track_acceleration, closed(0, 1000)},
+    {"acceleration_trust", &HorizonSettings::acceleration_trust, closed(0, 600)},
+    {"clearance_limit", &HorizonSettings::clearance_limit, closed(0, 1000)},
+    {"time_weight", &HorizonSettings::time_weight, closed(0, 1000)},
+    {"weight_length", &HorizonSettings::weight_length, closed(0, 1000)},
+    {"weight_steering", &HorizonSettings::weight_steering, closed(0, 1000)},
+    {"weight_clearance", &HorizonSettings::weight_clearance, closed(0, 1000)},
+    {"keep_ratio", &HorizonSettings::keep_ratio, below(0, 1)},
+};
+
+constexpr Field<CompanionSettings> kCompanion[] = {
+    {"setpoint_rate_hz", &CompanionSettings::setpoint_rate_hz, closed(2, 1000)},  // below 2 Hz PX4 leaves OFFBOARD
+    {"replan_rate_hz", &CompanionSettings::replan_rate_hz, above(0, 1000)},
+    {"planner_latency_ms", &CompanionSettings::planner_latency_ms, closed(0, 10000)},
+    {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},
+    {"stale_state", &CompanionSettings::stale_state, above(0, 60)},
+    {"stale_plan", &CompanionSettings::stale_plan, above(0, 60)},
+};
+
+std::string path_of(std::string_view section, std::string_view key) {
+  return std::string(section) + "." + std::string(key);
+}
+
+/// Calls visit(name, section, its fields) for each section, in the order of the file. `settings` may be const.
+template <class AnySettings, class Visitor>
+void for_each_section(AnySettings& settings, Visitor&& visit) {
+  visit("optimizer", settings.optimizer, kOptimizer);
+  visit("paper", settings.paper, kPaper);
+  visit("horizon", settings.horizon, kHorizon);
+  visit("companion", settings.companion, kCompanion);
+}
+
+void read_value(int& member, const Value& value, const Range& range) {
+  member = value.integer(range);
+}
+void read_value(double& member, const Value& value, const Range& range) {
+  member = value.number(range);
+}
+template <class Enum>
+void read_value(Enum& member, const Value& value, const Range&) {
+  member = static_cast<Enum>(value.choice(kSpellings<Enum>));
+}
+
+std::string value_text(int value) {
+  return std::to_string(value);
+}
+std::string value_text(double value) {
+  return number_text(value);
+}
+template <class Enum>
+std::string value_text(Enum value) {
+  return std::string(kSpellings<Enum>[static_cast<std::size_t>(value)]);
+}
+
+std::string range_text(int, const Range& range) {
+  return "an integer in " + range.text();
+}
+std::string range_text(double, const Range& range) {
+  return "a number in " + range.text();
+}
+template <class Enum>
+std::string range_text(Enum, const Range&) {
+  return "one of " + join(kSpellings<Enum>);
+}
+
+template <class Section>
+void read_field(Section& section, const Field<Section>& field, const Value& value) {
+  std::visit([&](auto member) { read_value(section.*member, value, field.range); }, field.member);
+}
+
+template <class Section>
+std::string field_text(const Section& section, const Field<Section>& field) {
+  return std::visit([&](auto member) { return value_text(section.*member); }, field.member);
+}
+
+template <class Section>
+std::string field_range(const Section& section, const Field<Section>& field) {
+  return std::visit([&](auto member) { return range_text(section.*member, field.range); }, field.member);
+}
+
+/// What is wrong between keys that are right by themselves.
+struct Conflict {
+  std::string_view path;  // the key that is reported
+  std::string complaint;
+};
+
+std::optional<Conflict> find_conflict(const Settings& s) {
+  const auto not_in = [](const Range& range) { return "; not in " + range.text(); };
+  if (s.optimizer.population < s.optimizer.slaves) {
+    return Conflict{"optimizer.population",
+                    "is smaller than the number of slaves" + not_in(closed(s.optimizer.slaves, 100000))};
+  }
+  if (s.optimizer.wep_min > s.optimizer.wep_max) {
+    return Conflict{"optimizer.wep_min", "is above wep_max" + not_in(closed(0, s.optimizer.wep_max))};
+  }
+  if (s.horizon.population < s.horizon.slaves) {
+    return Conflict{"horizon.population",
+                    "is smaller than the number of slaves" + not_in(closed(s.horizon.slaves, 100000))};
+  }
+  if (s.horizon.step > s.horizon.time) {
+    return Conflict{"horizon.step", "is above time" + not_in(closed(0.001, s.horizon.time))};
+  }
+  if (s.horizon.weight_length + s.horizon.weight_steering + s.horizon.weight_clearance <= 0.0) {
+    return Conflict{"horizon.weight_length", "and the other weights are all 0; expected one that is above 0"};
+  }
+  return std::nullopt;
+}
+
+Settings read_file(const std::filesystem::path& file) {
+  const Map root(read_document(file), {"format", "optimizer", "paper", "horizon", "companion"});
+  root.require_format("jink-planner/1");
+  Settings settings;
+  std::vector<std::pair<std::string, Value>> values;  // for the errors between keys
+  for_each_section(settings, [&](std::string_view name, auto& section, const auto& fields) {
+    std::vector<std::string_view> keys;
+    for (const auto& field : fields) keys.push_back(field.name);
+    const std::string expected = "a map with the keys " + join(keys);
+    const Map map(root.at(name, expected), std::move(keys));
+    for (const auto& field : fields) {
+      const Value value = map.at(field.name, field_range(section, field));
+      read_field(section, field, value);
+      values.emplace_back(path_of(name, field.name), value);
+    }
+  });
+  if (const auto conflict = find_conflict(settings)) {
+    for (const auto& [path, value] : values) {
+      if (path == conflict->path) value.fail(conflict->complaint);
+    }
+  }
+  return settings;
+}
+
+/// "section.key=value", and where an error says it comes from.
+struct Override {
+  std::string source;
+  std::string path;
+  std::string text;
+
+  explicit Override(const std::string& argument) : source("--set " + argument) {
+    const std::size_t equals = argument.find('=');
+    if (equals == std::string::npos) throw ConfigError(source + ": has no '='; expected section.key=value");
+    path = argument.substr(0, equals);
+    text = argument.substr(equals + 1);
+  }
+  [[nodiscard]] Value value() const { return {YAML::Node(text), source, path, 0}; }
+};
+
+void apply(const Override& change, Settings& settings) {
+  bool found = false;
+  std::vector<std::string> paths;
+  for_each_section(settings, [&](std::string_view name, auto& section, const auto& fields) {
+    for (const auto& field : fields) {
+      paths.push_back(path_of(name, field.name));
+      if (paths.back() != change.path) continue;
+      read_field(section, field, change.value());
+      found = true;
+    }
+  });
+  if (found) return;
+  const std::vector<std::string_view> known(paths.begin(), paths.end());
+  const std::string_view near = nearest(change.path, known);
+  throw ConfigError(change.source + ": key '" + change.path + "': unknown key with value '" + change.text + "'; " +
+                    (near.empty() ? "allowed: " + join(known) : "did you mean '" + std::string(near) + "'?"));
+}
+
+}  // namespace
+
+Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Settings settings = read_file(file);
+  std::vector<Override> changes;
+  for (const std::string& argument : overrides) {
+    changes.emplace_back(argument);
+    apply(changes.back(), settings);
+  }
+  // Checked after the last one, so that two overrides that belong together may come in any order.
+  if (const auto conflict = find_conflict(settings)) {
+    const std::string path(conflict->path);
+    const std::string section = path.substr(0, path.find('.') + 1);
+    std::string sources;
+    for (const Override& change : changes) {
+      if (change.path.starts_with(section)) sources += (sources.empty() ? "" : " ") + change.source;
+    }
+    for (const SettingText& setting : list_settings(settings)) {
+      if (setting.key == path) Value(YAML::Node(setting.value), sources, path, 0).fail(conflict->complaint);
+    }
+  }
+  return settings;
+}
+
+std::vector<SettingText> list_settings(const Settings& settings) {
+  std::vector<SettingText> out;
+  for_each_section(settings, [&](std::string_view name, const auto& section, const auto& fields) {
+    for (const auto& field : fields) {
+      out.push_back({path_of(name, field.name), field_text(section, field)});
+    }
+  });
+  return out;
+}
+
+std::filesystem::path config_folder() {
+  // Read only, and nothing in jink changes the environment.
+  const char* const folder = std::getenv("JINK_CONFIG_DIR");  // NOLINT(concurrency-mt-unsafe)
+  return folder != nullptr && *folder != '\0' ? folder : JINK_CONFIG_DIR;
+}
+
+}  // namespace jink::config

@@ -27,8 +27,24 @@ struct Settings {
   CompanionSettings companion;
 };
 
-/// Reads and checks a jink-planner/1 file, then applies `overrides`, each "section.key=value" as of `--set`; throws
-/// ConfigError naming file and line, or "--set" and the text. Unknown and missing keys are errors.
+/// Reads and checks a jink-planner/1 file, then applies `overrides` in order, each "section.key=value" as of `--set`.
+/// Every key is required; unknown ones are errors. Beyond each key's range: a population is no smaller than its number
+/// of slaves, optimizer.wep_min <= wep_max, horizon.step <= time, and the horizon's weights are not all 0. Throws
+/// ConfigError (config/error.hpp) naming file and line, or "--set" and the text.
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// One parameter as text: "horizon.margin", "0.35". Numbers read back to the same bits.
+struct SettingText {
+  std::string key;
+  std::string value;
+  bool operator==(const SettingText&) const = default;
+};
+
+/// Every parameter, in the order of config/planner.yaml; for the header of a flight log and for tests.
+std::vector<SettingText> list_settings(const Settings& settings);
+
+/// Where the project's own files are, planner.yaml, vehicles/, scenarios/ and missions/: the environment variable
+/// JINK_CONFIG_DIR, else the source tree's config folder. The environment is read at each call.
+std::filesystem::path config_folder();
 
 }  // namespace jink::config

@@ -12,6 +12,12 @@ enum class Constraint {
   kSwept   ///< both move during the segment
 };
 
+/// The axis along which the paper-mode problem places its waypoints.
+enum class Axis {
+  kWorldX,  ///< the world's X as [Paper] Figure 1 has it; needs start and target to differ enough in x
+  kPath     ///< from start to target
+};
+
 /// MOMVO and PMOMVO, [Paper] Algorithms 1 and 2.
 struct OptimizerSettings {
   int slaves = 6;             ///< m, sub-swarms
@@ -29,6 +35,7 @@ struct OptimizerSettings {
 struct PaperSettings {
   int waypoints = 20;                 ///< including start and target
   Constraint constraint = Constraint::kSwept;
+  Axis axis = Axis::kWorldX;
   double steering_limit_deg = 60.0;   ///< phi_max of Eq. (3)
   double penalty = 1000.0;            ///< lambda of Eq. (17)
   double lateral_range = 4.0;         ///< half width of the search box about the straight line
@@ -40,20 +47,27 @@ struct PaperSettings {
 /// The remaining path at once, replanned in flight.
 struct HorizonSettings {
   int waypoints = 6;             ///< K
-  double time = 6.0;             ///< looked ahead with free waypoints; the rest is straight
+  double time = 6.0;             ///< looked ahead; the rest is straight
   double step = 0.1;             ///< between points of the timed path
   int slaves = 4;
   int sharing = 3;
   int population = 48;
   int generations = 40;          ///< budget of one plan in virtual time, and the upper bound in real time
-  double deadline_ms = 20.0;     ///< budget of one plan in real time
+  double deadline_ms = 40.0;     ///< budget of one plan in real time
+  double lateral_range = 6.0;    ///< how far waypoints may leave the straight line
+  double back_range = 2.0;       ///< how far they may fall back behind the start
+  double acceleration_share = 0.7;   ///< of the vehicle's limit that plans use; the rest is for tracking them
+  double braking = 2.0;          ///< deceleration planned towards a stop, m/s²
   double margin = 0.35;          ///< kept from every obstacle on top of the radii, for the tracking error
-  double sigma_factor = 2.0;     ///< standard deviations of a track's position that the margin grows by
-  double track_acceleration = 0.3;  ///< bound on what a track's acceleration may be off by, for the margin's growth
+  double sigma_factor = 2.0;     ///< standard deviations of a track's position that clearance is asked for
+  double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
+  double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
+  double clearance_limit = 0.8;  ///< the most that uncertainty may ask for on top of the margin
+  double time_weight = 0.5;      ///< of lost time, as length at cruise speed, in the length objective
   double weight_length = 0.6;    ///< modified TOPSIS
-  double weight_steering = 0.1;
-  double weight_clearance = 0.3;
-  double keep_ratio = 0.05;      ///< a previous plan is kept unless a new one is shorter by this fraction
+  double weight_steering = 0.05;
+  double weight_clearance = 0.35;
+  double keep_ratio = 0.05;      ///< a previous plan is kept unless a new one is better by this fraction
 };
 
 }  // namespace jink::planner

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/mission.hpp"
+
+#include <gtest/gtest.h>
+
+#include "yaml_case.hpp"
+
+namespace jink::config {
+namespace {
+
+const std::string kValid =
+    "format: jink-mission/1\n"                                   // line 1
+    "name: survey\n"                                             // 2
+    "connection: udpin://127.0.0.1:14541\n"                      // 3
+    "vehicle: ardrone2\n"                                        // 4
+    "takeoff_height: 2.5\n"                                      // 5
+    "min_height: 1.2\n"                                          // 6
+    "waypoints: [[5, 5, 2], [20, 0, 0]]\n"                       // 7
+    "arrival: hold\n"                                            // 8
+    "geofence: {min: [-50, -40, 0.5], max: [50, 40, 20]}\n"      // 9
+    "dds: {domain: 7}\n"                                         // 10
+    "tracks: {required: false, timeout_s: 1.5, coast_s: 0.5}\n"  // 11
+    "time_limit: 120\n";                                         // 12
+
+void load(const std::filesystem::path& file) {
+  static_cast<void>(load_mission(file));
+}
+
+TEST(LoadMission, ReadsEveryKey) {
+  const TempFolder folder;
+  const Mission m = load_mission(folder.write("m.yaml", kValid));
+  EXPECT_EQ(m.name, "survey");
+  EXPECT_EQ(m.connection, "udpin://127.0.0.1:14541");
+  EXPECT_EQ(m.vehicle_name, "ardrone2");
+  EXPECT_EQ(m.vehicle.length, 0.52);
+  EXPECT_EQ(m.takeoff_height, 2.5);
+  EXPECT_EQ(m.min_height, 1.2);
+  ASSERT_EQ(m.waypoints.size(), 2U);
+  EXPECT_EQ(m.waypoints[0], planner::Vec3(5, 5, 2));
+  EXPECT_EQ(m.waypoints[1], planner::Vec3(20, 0, 0));  // lower than min_height: left as it is, raised in flight
+  EXPECT_EQ(m.arrival, Arrival::kHold);
+  EXPECT_EQ(m.geofence.min, planner::Vec3(-50, -40, 0.5));
+  EXPECT_EQ(m.geofence.max, planner::Vec3(50, 40, 20));
+  EXPECT_EQ(m.dds_domain, 7);
+  EXPECT_FALSE(m.tracks.required);
+  EXPECT_EQ(m.tracks.timeout_s, 1.5);
+  EXPECT_EQ(m.tracks.coast_s, 0.5);
+  EXPECT_EQ(m.time_limit, 120.0);
+}
+
+TEST(LoadMission, FillsInWhatIsOptional) {
+  const TempFolder folder;
+  const Mission m =
+      load_mission(folder.write("m.yaml",
+                                "format: jink-mission/1\nname: short\nconnection: serial:///dev/ttyACM0:921600\n"
+                                "vehicle: px4\nwaypoints: [[1, 2, 3]]\ntracks: {coast_s: 0}\n"));
+  const Mission defaults;
+  EXPECT_EQ(m.takeoff_height, defaults.takeoff_height);
+  EXPECT_EQ(m.min_height, defaults.min_height);
+  EXPECT_EQ(m.arrival, Arrival::kLand);
+  EXPECT_EQ(m.geofence.max, planner::Box{}.max);
+  EXPECT_EQ(m.dds_domain, 0);
+  EXPECT_TRUE(m.tracks.required);
+  EXPECT_EQ(m.tracks.timeout_s, 1.0);
+  EXPECT_EQ(m.tracks.coast_s, 0.0);
+  EXPECT_EQ(m.time_limit, 300.0);
+}
+
+TEST(LoadMission, AcceptsTheUrlsOfMavsdk) {
+  for (const std::string url :
+       {"udp://:14540", "udpin://0.0.0.0:14540", "udpout://192.168.1.12:14550", "tcp://localhost:5760", "tcpin://:5760",
+        "tcpout://10.0.0.2:5760", "udpin://[::1]:14540", "serial:///dev/ttyACM0", "serial:///dev/ttyUSB0:57600",
+        "serial_flowcontrol:///dev/ttyS1:921600"}) {
+    std::string text = kValid;
+    text.replace(text.find("udpin://127.0.0.1:14541"), 23, url);
+    const TempFolder folder;
+    const auto file = folder.write("m.yaml", text);
+    EXPECT_NO_THROW(EXPECT_EQ(load_mission(file).connection, url)) << url;
+  }
+}
+
+TEST(LoadMission, RefusesBadConnections) {
+  const std::string url = "udpin://127.0.0.1:14541";
+  const std::vector<BadCase> cases = {
+      {url, "127.0.0.1:14540", 3, "connection", "127.0.0.1:14540", "is not a MAVSDK URL; expected SCHEME://ADDRESS"},
+      {url, "udpinn://127.0.0.1:1", 3, "connection", "udpinn://127.0.0.1:1", "did you mean 'udpin'?"},
+      {url, "http://x:80", 3, "connection", "http://x:80",
+       "a scheme of udp, udpin, udpout, tcp, tcpin, tcpout, serial"},
+      {url, "udpin://127.0.0.1", 3, "connection", "udpin://127.0.0.1", "has no valid port; expected [HOST]:PORT"},
+      {url, "\"udpin://127.0.0.1:\"", 3, "connection", "udpin://127.0.0.1:", "the port in [1, 65535]"},
+      {url, "udpin://127.0.0.1:0", 3, "connection", "udpin://127.0.0.1:0", "[1, 65535]"},
+      {url, "udpin://127.0.0.1:65536", 3, "connection", "udpin://127.0.0.1:65536", "[1, 65535]"},
+      {url, "udpin://127.0.0.1:99999999999999999999", 3, "connection", "", "[1, 65535]"},
+      {url, "udpout://:14540", 3, "connection", "udpout://:14540", "has no host"},
+      {url, "\"udpin://a b:14540\"", 3, "connection", "udpin://a b:14540", "holds a space"},
+      {url, "serial://ttyACM0:57600", 3, "connection", "serial://ttyACM0:57600", "expected /DEVICE[:BAUD]"},
+      {url, "serial:///dev/ttyACM0:fast", 3, "connection", "serial:///dev/ttyACM0:fast", "has no valid baud rate"},
+      {url, "", 3, "connection", "null", "is empty; expected text"},
+      {"connection: " + url + "\n", "", 1, "connection", "", "missing; expected a MAVSDK URL"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadMission, RefusesBadValues) {
+  const std::vector<BadCase> cases = {
+      {"jink-mission/1", "jink-scenario/1", 1, "format", "jink-scenario/1", "is not 'jink-mission/1'"},
+      {"vehicle: ardrone2", "vehicle: dragonfly", 4, "vehicle", "dragonfly", "ardrone2, px4"},
+      {"takeoff_height: 2.5", "takeoff_height: 0", 5, "takeoff_height", "0", "is not in (0, 100]"},
+      {"takeoff_height: 2.5", "takeoff_height: 25", 5, "takeoff_height", "25", "geofence's top; not in (0, 20]"},
+      {"min_height: 1.2", "min_height: -1", 6, "min_height", "-1", "is not in [0, 1000]"},
+      {"min_height: 1.2", "min_height: 20", 6, "min_height", "20", "geofence's top; not in [0, 20)"},
+      {"[[5, 5, 2], [20, 0, 0]]", "[]", 7, "waypoints", "[]", "a list with a number of elements in [1, 10000]"},
+      {"[20, 0, 0]", "[20, 0]", 7, "waypoints[1]", "[20, 0]", "expected [x, y, z]"},
+      {"[20, 0, 0]", "[51, 0, 0]", 7, "waypoints[1][0]", "51", "is outside the geofence; not in [-50, 50]"},
+      {"[20, 0, 0]", "[20, -40.5, 0]", 7, "waypoints[1][1]", "-40.5", "is outside the geofence; not in [-40, 40]"},
+      {"[20, 0, 0]", "[20, 0, 20.5]", 7, "waypoints[1][2]", "20.5", "is outside the geofence; not in [0.5, 20]"},
+      {"[-50, -40, 0.5]", "[-50, -40, 1.5]", 7, "waypoints[1][2]", "0", "raised to min_height, 1.2, is outside"},
+      {"arrival: hold", "arrival: hover", 8, "arrival", "hover", "is not one of land, hold"},
+      {"max: [50, 40, 20]", "max: [50, 40, 0.5]", 9, "geofence.max[2]", "0.5", "is not above min, 0.5"},
+      {"domain: 7", "domain: 233", 10, "dds.domain", "233", "is not in [0, 232]"},
+      {"domain: 7", "domain: 1.5", 10, "dds.domain", "1.5", "is not an integer; expected an integer in [0, 232]"},
+      {"domain: 7", "domain: 99999999999999999999", 10, "dds.domain", "99999999999999999999", "is not in [0, 232]"},
+      {"required: false", "required: maybe", 11, "tracks.required", "maybe", "is not true or false"},
+      {"timeout_s: 1.5", "timeout_s: 0", 11, "tracks.timeout_s", "0", "is not in (0, 60]"},
+      {"coast_s: 0.5", "coast_s: -1", 11, "tracks.coast_s", "-1", "is not in [0, 60]"},
+      {"coast_s: 0.5", "coasts: 1", 11, "tracks.coasts", "1", "did you mean 'coast_s'?"},
+      {"time_limit: 120", "time_limit: .inf", 12, "time_limit", ".inf", "not a finite number"},
+      {"time_limit: 120", "time_limits: 120", 12, "time_limits", "120", "did you mean 'time_limit'?"},
+      {"waypoints: [[5, 5, 2], [20, 0, 0]]\n", "", 1, "waypoints", "", "missing; expected a list of [x, y, z]"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+}  // namespace
+}  // namespace jink::config

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "yaml_case.hpp"
+
+namespace jink::config {
+namespace {
+
+const std::string kVehicle =
+    "{radius: 0.3, length: 0.5, mass: 0.4, max_speed: 5, cruise_speed: 3, max_acceleration: 6, max_jerk: 30, "
+    "max_climb: 2}";
+
+const std::string kValid =
+    "format: jink-scenario/1\n"  // line 1
+    "name: example\n"            // 2
+    "start: [0, 0, 1.5]\n"       // 3
+    "target: [20, 0, 1.5]\n"     // 4
+    "time_limit: 60\n"           // 5
+    "vehicle: " +
+    kVehicle +
+    "\n"                                                                                                    // 6
+    "world: {min: [-5, -10, 0], max: [25, 10, 8]}\n"                                                        // 7
+    "sensing: {range: 21, rate: 25, delay: 0.1, position_noise: 0.2, velocity_noise: 0.3, dropout: 0.4}\n"  // 8
+    "obstacles:\n"                                                                                          // 9
+    "- {radius: 0.5, position: [5, 5, 2], velocity: [4, -2, 1], acceleration: [0, 0, 7]}\n"                 // 10
+    "- {box: [0.8, 0.9, 1.0], motion: {type: trefoil, center: [10, 0, 1], scale: [1, 2, 3], slower: 1.1, offset: "
+    "0.3}}\n"
+    "- {radius: 0.4, motion: {type: sine, center: [5, 0, 1], amplitude: [0, 2, 0], frequency_hz: [0, 0.2, 0], phase: "
+    "[0, 0, 0.6]}}\n"  // 12
+    "- {radius: 0.45, motion: {type: bounce, position: [1, 1, 1], velocity: [1, 2, 0], min: [0, -5, 1], max: [19, 5, "
+    "1]}}\n"  // 13
+    "- {vertices: [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], motion: {type: waypoints, times: [0, 5, 9], points: "
+    "[[3,3,1],[6,0,1],[9,3,2]]}}\n";  // 14
+
+void load(const std::filesystem::path& file) {
+  static_cast<void>(load_scenario(file));
+}
+
+Scenario loaded(const std::string& text) {
+  const TempFolder folder;
+  return load_scenario(folder.write("s.yaml", text));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(LoadScenario, ReadsEveryKey) {
+  const Scenario s = loaded(kValid);
+  EXPECT_EQ(s.name, "example");
+  EXPECT_EQ(s.start, Vec3(0, 0, 1.5));
+  EXPECT_EQ(s.target, Vec3(20, 0, 1.5));
+  EXPECT_EQ(s.time_limit, 60.0);
+  EXPECT_EQ(s.vehicle_name, "inline");
+  EXPECT_EQ(s.vehicle.max_speed, 5.0);
+  ASSERT_TRUE(s.world.has_value());
+  EXPECT_EQ(s.world->min, Vec3(-5, -10, 0));
+  EXPECT_EQ(s.world->max, Vec3(25, 10, 8));
+  EXPECT_EQ(s.sensing.range, 21.0);
+  EXPECT_EQ(s.sensing.rate, 25.0);
+  EXPECT_EQ(s.sensing.delay, 0.1);
+  EXPECT_EQ(s.sensing.position_noise, 0.2);
+  EXPECT_EQ(s.sensing.velocity_noise, 0.3);
+  EXPECT_EQ(s.sensing.dropout, 0.4);
+  EXPECT_EQ(s.obstacles.size(), 5U);
+}
+
+TEST(LoadScenario, ReadsEveryShapeAndMotion) {
+  const Scenario s = loaded(kValid);
+  ASSERT_EQ(s.obstacles.size(), 5U);
+  EXPECT_EQ(std::get<SphereShape>(s.obstacles[0].shape).radius, 0.5);
+  const auto linear = std::get<LinearMotion>(s.obstacles[0].motion);
+  EXPECT_EQ(linear.position, Vec3(5, 5, 2));
+  EXPECT_EQ(linear.velocity, Vec3(4, -2, 1));
+  EXPECT_EQ(linear.acceleration, Vec3(0, 0, 7));
+  EXPECT_EQ(std::get<BoxShape>(s.obstacles[1].shape).edges, Vec3(0.8, 0.9, 1.0));
+  const auto trefoil = std::get<TrefoilMotion>(s.obstacles[1].motion);
+  EXPECT_EQ(trefoil.center, Vec3(10, 0, 1));
+  EXPECT_EQ(trefoil.scale, Vec3(1, 2, 3));
+  EXPECT_EQ(trefoil.slower, 1.1);
+  EXPECT_EQ(trefoil.offset, 0.3);
+  const auto sine = std::get<SineMotion>(s.obstacles[2].motion);
+  EXPECT_EQ(sine.center, Vec3(5, 0, 1));
+  EXPECT_EQ(sine.amplitude, Vec3(0, 2, 0));
+  EXPECT_EQ(sine.frequency_hz, Vec3(0, 0.2, 0));
+  EXPECT_EQ(sine.phase, Vec3(0, 0, 0.6));
+  const auto bounce = std::get<BounceMotion>(s.obstacles[3].motion);
+  EXPECT_EQ(bounce.position, Vec3(1, 1, 1));
+  EXPECT_EQ(bounce.velocity, Vec3(1, 2, 0));
+  EXPECT_EQ(bounce.min, Vec3(0, -5, 1));
+  EXPECT_EQ(bounce.max, Vec3(19, 5, 1));
+  const auto vertices = std::get<VertexShape>(s.obstacles[4].shape).vertices;
+  ASSERT_EQ(vertices.size(), 4U);
+  EXPECT_EQ(vertices[3], Vec3(0, 0, 1));
+  const auto waypoints = std::get<WaypointsMotion>(s.obstacles[4].motion);
+  EXPECT_EQ(waypoints.times, (std::vector<double>{0, 5, 9}));
+  ASSERT_EQ(waypoints.points.size(), 3U);
+  EXPECT_EQ(waypoints.points[2], Vec3(9, 3, 2));
+}
+
+TEST(LoadScenario, FillsInWhatIsOptional) {
+  const Scenario s =
+      loaded("format: jink-scenario/1\nname: short\nstart: [0, 0, 0]\ntarget: [3, 4, 0]\nvehicle: " + kVehicle +
+             "\nsensing: {delay: 0.2}\nobstacles:\n- {radius: 1, position: [9, 9, 9]}\n");
+  EXPECT_EQ(s.time_limit, 10.0 * 5.0 / 5.0 + 30.0);
+  EXPECT_FALSE(s.world.has_value());
+  EXPECT_EQ(s.sensing.range, planner::kInfinity);
+  EXPECT_EQ(s.sensing.rate, 20.0);
+  EXPECT_EQ(s.sensing.delay, 0.2);
+  EXPECT_EQ(s.sensing.dropout, 0.0);
+  const auto linear = std::get<LinearMotion>(s.obstacles.at(0).motion);
+  EXPECT_EQ(linear.velocity, Vec3(0, 0, 0));
+  EXPECT_EQ(linear.acceleration, Vec3(0, 0, 0));
+}
+
+TEST(LoadScenario, AcceptsNoObstaclesAndStartAtTarget) {
+  const Scenario s =
+      loaded("format: jink-scenario/1\nname: idle\nstart: [1, 2, 3]\ntarget: [1, 2, 3]\nvehicle: " + kVehicle +
+             "\nobstacles: []\n");
+  EXPECT_TRUE(s.obstacles.empty());
+  EXPECT_EQ(s.time_limit, 30.0);
+}
+
+TEST(LoadScenario, RefusesBadTopLevelKeys) {
+  const std::vector<BadCase> cases = {
+      {"jink-scenario/1", "jink-scenario/2", 1, "format", "jink-scenario/2", "is not 'jink-scenario/1'"},
+      {"format: jink-scenario/1\n", "", 1, "format", "", "missing; expected 'jink-scenario/1'"},
+      {"name: example", "name: ''", 2, "name", "", "is empty; expected text"},
+      {"name: example", "name: [a]", 2, "name", "[a]", "is a list of 1; expected text"},
+      {"name: example\n", "", 1, "name", "", "missing; expected text"},
+      {"start: [0, 0, 1.5]", "start: [0, 0]", 3, "start", "[0, 0]", "is a list of 2; expected [x, y, z]"},
+      {"start: [0, 0, 1.5]", "start: 7", 3, "start", "7", "is a number; expected [x, y, z]"},
+      {"start: [0, 0, 1.5]", "start: [0, x, 1.5]", 3, "start[1]", "x", "is a string; expected a number"},
+      {"start: [0, 0, 1.5]", "start: [0, .inf, 1.5]", 3, "start[1]", ".inf", "not a finite number"},
+      {"start: [0, 0, 1.5]", "start: [0, 0, -0.1]", 3, "start[2]", "-0.1", "outside the world; not in [0, 8]"},
+      {"target: [20, 0, 1.5]", "target: [26, 0, 1.5]", 4, "target[0]", "26", "outside the world; not in [-5, 25]"},
+      {"target: [20, 0, 1.5]", "target: [1e6, 0, 1]", 4, "target[0]", "1e6", "is not in [-100000, 100000]"},
+      {"target:", "tagret:", 4, "tagret", "[20, 0, 1.5]", "did you mean 'target'?"},
+      {"time_limit: 60", "time_limit: 0", 5, "time_limit", "0", "is not in (0, 1000000]"},
+      {"world: {min: [-5, -10, 0], max: [25, 10, 8]}", "world: {min: [-5, -10, 0], max: [25, -10, 8]}", 7,
+       "world.max[1]", "-10", "is not above min, -10; expected a number in (-10, 100000]"},
+      {"world: {min: [-5, -10, 0], ", "world: {", 7, "world.min", "", "missing; expected [x, y, z]"},
+      {"world: {min: [-5, -10, 0], max: [25, 10, 8]}", "world: 8", 7, "world", "8", "a map with the keys min, max"},
+      {"mass: 0.4", "mass: -1", 6, "vehicle.mass", "-1", "is not in (0, 10000]"},
+      {"mass: 0.4, ", "", 6, "vehicle.mass", "", "missing; expected a number in (0, 10000]"},
+      {"obstacles:\n", "obstacels:\n", 9, "obstacels", "", "did you mean 'obstacles'?"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadScenario, RefusesBadSensing) {
+  const std::vector<BadCase> cases = {
+      {"range: 21", "range: 0", 8, "sensing.range", "0", "is not in (0, 1000000]"},
+      {"rate: 25", "rate: -3", 8, "sensing.rate", "-3", "is not in (0, 1000]"},
+      {"rate: 25", "rate: 1001", 8, "sensing.rate", "1001", "is not in (0, 1000]"},
+      {"delay: 0.1", "delay: 10.1", 8, "sensing.delay", "10.1", "is not in [0, 10]"},
+      {"position_noise: 0.2", "position_noise: -1", 8, "sensing.position_noise", "-1", "is not in [0, 1000]"},
+      {"velocity_noise: 0.3", "velocity_noise: yes", 8, "sensing.velocity_noise", "yes", "is a boolean"},
+      {"dropout: 0.4", "dropout: 1", 8, "sensing.dropout", "1", "is not in [0, 1)"},
+      {"rate: 25", "rat: 25", 8, "sensing.rat", "25", "did you mean 'rate'?"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadScenario, RefusesBadShapes) {
+  const std::vector<BadCase> cases = {
+      {"radius: 0.5", "radius: -0.5", 10, "obstacles[0].radius", "-0.5", "is not in (0, 1000]"},
+      {"radius: 0.5, ", "", 10, "obstacles[0]", "", "has no shape; expected exactly one of radius, box, vertices"},
+      {"radius: 0.5, ", "radius: 0.5, box: [1, 1, 1], ", 10, "obstacles[0]", "", "has the shapes radius, box"},
+      {"box: [0.8, 0.9, 1.0]", "box: [0.8, 0, 1.0]", 11, "obstacles[1].box[1]", "0", "is not in (0, 1000]"},
+      {"box: [0.8, 0.9, 1.0]", "box: 0.8", 11, "obstacles[1].box", "0.8", "is a number; expected a list"},
+      {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[]", 14, "obstacles[4].vertices", "[]", "in [1, 10000]"},
+      {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[[0,0,0],[1,0]]", 14, "obstacles[4].vertices[1]", "[1, 0]", "[x, y, z]"},
+      {"[0,1,0]", "[0,.nan,0]", 14, "obstacles[4].vertices[2][1]", ".nan", "not a finite number"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadScenario, RefusesBadMotions) {
+  const std::vector<BadCase> cases = {
+      {"position: [5, 5, 2], ", "", 10, "obstacles[0].position", "", "missing; expected [x, y, z], or motion"},
+      {"velocity: [4, -2, 1]", "velocity: [4, -2000, 1]", 10, "obstacles[0].velocity[1]", "-2000", "[-1000, 1000]"},
+      {"acceleration: [0, 0, 7]", "motion: {type: sine}", 10, "obstacles[0].position", "[5, 5, 2]", "beside motion"},
+      {"type: trefoil", "type: trefoyl", 11, "obstacles[1].motion.type", "trefoyl", "did you mean 'trefoil'?"},
+      {"type: trefoil", "type: linear", 11, "obstacles[1].motion.type", "linear", "trefoil, sine, bounce, waypoints"},
+      {"type: trefoil, ", "", 11, "obstacles[1].motion.type", "", "missing; expected one of trefoil"},
+      {"slower: 1.1", "slower: 0", 11, "obstacles[1].motion.slower", "0", "is not in [0.001, 1000000]"},
+      {"slower: 1.1, ", "", 11, "obstacles[1].motion.slower", "", "missing; expected a number"},
+      {"slower: 1.1", "slowr: 1.1", 11, "obstacles[1].motion.slowr", "1.1", "did you mean 'slower'?"},
+      {"offset: 0.3", "offset: 0.3, phase: [0, 0, 0]", 11, "obstacles[1].motion.phase", "[0, 0, 0]", "unknown key"},
+      {"frequency_hz: [0, 0.2, 0]", "frequency_hz: [0, -0.2, 0]", 12, "obstacles[2].motion.frequency_hz[1]", "-0.2",
+       "is not in [0, 1000]"},
+      {"position: [1, 1, 1]", "position: [1, 6, 1]", 13, "obstacles[3].motion.position[1]", "6",
+       "is not between min and max, in [-5, 5]"},
+      {"max: [19, 5, 1]", "max: [-1, 5, 1]", 13, "obstacles[3].motion.max[0]", "-1",
+       "expected a number in (0, 100000]"},
+      {"velocity: [1, 2, 0]", "velocity: [1, 2, 3]", 13, "obstacles[3].motion.max[2]", "1", "is not above min"},
+      {"times: [0, 5, 9]", "times: [0, 5, 5]", 14, "obstacles[4].motion.times[2]", "5",
+       "expected a number in (5, 1000000]"},
+      {"times: [0, 5, 9]", "times: [-1, 5, 9]", 14, "obstacles[4].motion.times[0]", "-1", "is not in [0, 1000000]"},
+      {"times: [0, 5, 9]", "times: [0, 5]", 14, "obstacles[4].motion.points", "", "is a list of 3; expected a list"},
+      {"times: [0, 5, 9]", "times: []", 14, "obstacles[4].motion.times", "[]", "is a list of 0"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadScenario, NamesTheLineOfAValueInALongList) {
+  const std::string text = replaced(kValid, "start: [0, 0, 1.5]", "start:\n- 0\n- zero\n- 1.5");
+  const TempFolder folder;
+  const auto file = folder.write("s.yaml", text);
+  expect_contains(error_of([&] { load(file); }), ":5: key 'start[1]': value 'zero'");
+}
+
+TEST(LoadScenario, FindsAVehicleBesideTheScenariosFolderFirst) {
+  const TempFolder folder;
+  const std::string text = replaced(kValid, kVehicle, "ardrone2");
+  const auto file = folder.write("scenarios/s.yaml", text);
+  // The project's own, as there is none beside the scenario yet.
+  const Scenario own = load_scenario(file);
+  EXPECT_EQ(own.vehicle_name, "ardrone2");
+  EXPECT_EQ(own.vehicle.mass, 0.42);
+  folder.write("vehicles/ardrone2.yaml",
+               "radius: 1\nlength: 2\nmass: 3\nmax_speed: 4\ncruise_speed: 4\n"
+               "max_acceleration: 6\nmax_jerk: 7\nmax_climb: 8\n");
+  EXPECT_EQ(load_scenario(file).vehicle.mass, 3.0);
+  // A folder that is given is the only one.
+  EXPECT_EQ(load_scenario(file, folder.path() / "vehicles").vehicle.mass, 3.0);
+  expect_contains(
+      error_of([&] { static_cast<void>(load_scenario(file, folder.path() / "none")); }),
+      ":6: key 'vehicle': value 'ardrone2' is not a vehicle; there are none in " + (folder.path() / "none").string());
+}
+
+TEST(LoadScenario, LetsTheEnvironmentNameTheProjectsFolder) {
+  const TempFolder folder;
+  folder.write("elsewhere/vehicles/kite.yaml",
+               "radius: 1\nlength: 2\nmass: 3\nmax_speed: 4\ncruise_speed: 4\n"
+               "max_acceleration: 6\nmax_jerk: 7\nmax_climb: 8\n");
+  const auto file = folder.write("s.yaml", replaced(kValid, kVehicle, "kite"));
+  ASSERT_EQ(setenv("JINK_CONFIG_DIR", (folder.path() / "elsewhere").c_str(), 1), 0);
+  EXPECT_EQ(load_scenario(file).vehicle.max_jerk, 7.0);
+  ASSERT_EQ(unsetenv("JINK_CONFIG_DIR"), 0);
+  expect_contains(error_of([&] { load(file); }), "is not a vehicle");
+}
+
+TEST(LoadScenario, NamesTheVehiclesThatExist) {
+  const std::vector<BadCase> cases = {
+      {kVehicle, "ardrone3", 6, "vehicle", "ardrone3",
+       "did you mean 'ardrone2'? expected a map or one of ardrone2, px4"},
+      {kVehicle, "zeppelin", 6, "vehicle", "zeppelin", "expected a map or one of ardrone2, px4"},
+      {kVehicle, "../ardrone2", 6, "vehicle", "../ardrone2", "is not the name of a vehicle"},
+      {kVehicle, "/etc/passwd", 6, "vehicle", "/etc/passwd", "is not the name of a vehicle"},
+      {kVehicle, "..", 6, "vehicle", "..", "is not the name of a vehicle"},
+      {kVehicle, "[1]", 6, "vehicle", "[1]", "is a list of 1; expected text"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+}
+
+TEST(LoadScenario, BlamesTheVehicleFileForItsOwnFaults) {
+  const TempFolder folder;
+  const auto vehicle = folder.write("broken.yaml", "radius: 1\nlength: -2\n");
+  const auto file = folder.write("s.yaml", replaced(kValid, kVehicle, "broken"));
+  expect_contains(error_of([&] { static_cast<void>(load_scenario(file, folder.path())); }), vehicle.string() + ":");
+}
+
+}  // namespace
+}  // namespace jink::config

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/companion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace jink::bridge {
+namespace {
+
+constexpr double kArrival = 0.3;         // m, to the last waypoint
+constexpr double kArrivalSpeed = 0.5;    // m/s
+constexpr double kPassing = 0.7;         // m, to a waypoint on the way
+constexpr double kTakeoffTolerance = 0.3;  // m
+constexpr double kLostReference = 1.2;   // m from the reference, beyond which plans start at the vehicle instead
+constexpr double kYawRate = 1.5;         // rad/s, at which the heading turns to the next waypoint
+constexpr double kYawDistance = 1.0;     // m, a nearer waypoint does not turn it
+
+SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
+  SupervisorSettings result;
+  result.stale_state = s.stale_state;
+  result.stale_plan = s.stale_plan;
+  return result;
+}
+
+double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+}  // namespace
+
+std::optional<Percentiles> percentiles(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const auto rank = [&](double share) {
+    const auto n = static_cast<double>(values.size());
+    return values[static_cast<std::size_t>(std::max(0.0, std::ceil(share * n) - 1.0))];
+  };
+  return Percentiles{rank(0.5), rank(0.99), values.back()};
+}
+
+Companion::Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts)
+    : mission_(mission),
+      settings_(settings),
+      parts_(std::move(parts)),
+      supervisor_(mission, supervisor_settings(settings.companion)),
+      table_(mission.tracks.coast_s),
+      stream_(settings.companion.setpoint_lead, settings.horizon.braking) {}
+
+void Companion::event(double now, std::string_view name, const std::string& detail) {
+  for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
+}
+
+bool Companion::step(double now) {
+  if (last_step_ < 0.0) {
+    for (Vec3& waypoint : mission_.waypoints) {
+      if (waypoint.z() >= mission_.min_height) continue;
+      event(now, "raised", "a waypoint at " + std::to_string(waypoint.z()) + " m is raised to min_height " +
+                               std::to_string(mission_.min_height) + " m");
+      waypoint.z() = mission_.min_height;
+    }
+  }
+  state_ = parts_.link.state();
+  for (FlightObserver* observer : parts_.observers) observer->on_state(now, state_);
+  take_tracks(now);
+  take_plan(now);
+  measure(now);
+  const Decision decision = supervisor_.update(now, state_, picture(now));
+  move(now, decision);
+  if (decision.request) {
+    event(now, "request", std::string(to_string(*decision.request)));
+    parts_.link.request(*decision.request);
+  }
+  announce(now);
+  last_step_ = now;
+  return !supervisor_.done();
+}
+
+void Companion::take_tracks(double now) {
+  TrackMessage message;
+  bool any = false;
+  while (parts_.tracks.poll(message)) {
+    table_.ingest(message);
+    any = true;
+  }
+  if (!any) return;
+  const auto tracks = table_.predict(now, settings_.horizon.acceleration_trust);
+  for (FlightObserver* observer : parts_.observers) observer->on_tracks(now, tracks);
+}
+
+void Companion::take_plan(double now) {
+  std::optional<PlanResult> result = parts_.planner.poll(now);
+  if (!result) return;
+  ++summary_.plans;
+  summary_.plan_ms.push_back(result->ms);
+  if (result->missed) ++summary_.deadline_misses;
+  if (result->plan.status == planner::PlanStatus::kBlocked) ++summary_.blocked_plans;
+  for (FlightObserver* observer : parts_.observers) observer->on_plan(now, *result);
+  if (result->plan.status != announced_status_) {
+    announced_status_ = result->plan.status;
+    event(now, "plan_status", std::string(planner::to_string(announced_status_)));
+  }
+  const bool wanted = supervisor_.phase() == Phase::kFlying && supervisor_.hazard().empty();
+  const bool usable = !result->plan.path.empty();
+  // A plan made under a hazard still ends it: the planner is alive.
+  if (usable) newest_plan_ = result->job.begun;
+  if (!usable || !wanted) return;
+  planner::TimedPath path = std::move(result->plan.path);
+  for (planner::TimedPoint& point : path) point.t += result->job.start;
+  stream_.follow(std::move(path));
+  if (result->job.newest_track >= 0.0) {
+    unsent_track_ = result->job.newest_track;
+    unsent_from_ = result->job.start;
+  }
+}
+
+planner::Box Companion::volume(const Vec3& start) const {
+  planner::Box box = mission_.geofence;
+  box.min.z() = std::max(box.min.z(), mission_.min_height);
+  // Where the vehicle is already, a path may begin.
+  box.min = box.min.cwiseMin(start);
+  box.max = box.max.cwiseMax(start);
+  return box;
+}
+
+void Companion::start_plan(double now) {
+  const config::CompanionSettings& companion = settings_.companion;
+  if (parts_.planner.busy() || (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz)) return;
+  last_plan_begun_ = now;
+  PlanJob job;
+  job.number = summary_.plans;
+  job.begun = now;
+  job.start = now + 1e-3 * companion.planner_latency_ms;
+  job.newest_track = table_.newest_message();
+  job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
+
+  const planner::TimedPoint reference = stream_.reference(job.start);
+  const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
+  const bool lost = error > kLostReference;
+  planner::PathRequest& request = job.request;
+  request.position = lost ? Vec3(state_.position + (job.start - state_.position_stamp) * state_.velocity) : reference.position;
+  request.velocity = lost ? state_.velocity : reference.velocity;
+  if (lost) event(now, "reference_lost", "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
+  request.target = mission_.waypoints[waypoint_];
+  request.vehicle = mission_.vehicle;
+  request.volume = volume(request.position);
+  request.margin = settings_.horizon.margin;
+  request.track_acceleration = settings_.horizon.track_acceleration;
+  request.acceleration_trust = settings_.horizon.acceleration_trust;
+  if (!lost) {
+    job.previous = stream_.plan(job.start);
+    for (planner::TimedPoint& point : job.previous) point.t -= job.start;
+    // A plan to another waypoint is no plan to keep.
+    if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
+  }
+  parts_.planner.start(std::move(job));
+}
+
+void Companion::move(double now, const Decision& decision) {
+  using Motion = Decision::Motion;
+  switch (decision.motion) {
+    case Motion::kNone: return;
+    case Motion::kTakeoffPoint:
+      if (!stream_.active() || supervisor_.phase() == Phase::kEngaging) {
+        takeoff_point_ = state_.position;
+        takeoff_point_.z() = std::max(state_.position.z() + mission_.takeoff_height, mission_.min_height);
+        stream_.hold(takeoff_point_, now);
+      }
+      break;
+    case Motion::kStay:
+      if (!stream_.active()) stream_.hold(state_.position, now);
+      break;
+    case Motion::kFollow:
+      if (supervisor_.phase() == Phase::kFlying) start_plan(now);
+      break;
+    case Motion::kBrake:
+      stream_.brake(now);
+      // While a hazard lasts the planner goes on: when it has passed there is a plan to follow.
+      if (supervisor_.phase() == Phase::kFlying) start_plan(now);
+      break;
+  }
+  if (!stream_.active()) stream_.hold(state_.position, now);
+  const Setpoint setpoint = stream_.setpoint(now, heading(now));
+  if (!parts_.link.send(setpoint)) {
+    event(now, "send_failed", "a setpoint could not be sent");
+    return;
+  }
+  for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
+  if (unsent_track_ && now + settings_.companion.setpoint_lead >= unsent_from_) {
+    summary_.track_to_setpoint_ms.push_back(1e3 * (now - *unsent_track_));
+    unsent_track_.reset();
+  }
+}
+
+// Towards the waypoint, turning at a bounded rate from where the vehicle looks now.
+double Companion::heading(double now) {
+  if (!yaw_known_) {
+    yaw_ = state_.yaw;
+    yaw_known_ = true;
+  }
+  const Vec3 ahead = mission_.waypoints[waypoint_] - state_.position;
+  if (supervisor_.phase() == Phase::kFlying && ahead.head<2>().norm() > kYawDistance) {
+    const double most = kYawRate * std::max(0.0, now - last_step_);
+    yaw_ = wrapped(yaw_ + std::clamp(wrapped(std::atan2(ahead.y(), ahead.x()) - yaw_), -most, most));
+  }
+  return yaw_;
+}
+
+FlightPicture Companion::picture(double now) {
+  FlightPicture picture;
+  picture.newest_tracks = table_.newest_message();
+  picture.newest_plan = newest_plan_;
+  picture.at_takeoff_height = takeoff_point_.z() - state_.position.z() < kTakeoffTolerance;
+  next_waypoint(now);
+  picture.at_target = waypoint_ + 1 == mission_.waypoints.size() &&
+                      (state_.position - mission_.waypoints.back()).norm() < kArrival &&
+                      state_.velocity.norm() < kArrivalSpeed;
+  picture.at_rest = state_.velocity.norm() < kArrivalSpeed;
+  while (auto report = parts_.link.next_report()) {
+    event(now, report->accepted ? "accepted" : "refused",
+          std::string(to_string(report->command)) + (report->detail.empty() ? "" : ": " + report->detail));
+    picture.report = std::move(report);
+  }
+  return picture;
+}
+
+void Companion::next_waypoint(double now) {
+  if (supervisor_.phase() != Phase::kFlying || waypoint_ + 1 >= mission_.waypoints.size()) return;
+  if ((state_.position - mission_.waypoints[waypoint_]).norm() > kPassing) return;
+  event(now, "waypoint", std::to_string(waypoint_ + 1) + " of " + std::to_string(mission_.waypoints.size()) + " passed");
+  ++waypoint_;
+}
+
+void Companion::measure(double now) {
+  const Phase phase = supervisor_.phase();
+  if (phase != Phase::kFlying && phase != Phase::kStopping) return;
+  if (flight_began_ < 0.0) {
+    flight_began_ = now;
+    Vec3 from = state_.position;
+    for (const Vec3& waypoint : mission_.waypoints) {
+      summary_.straight_length += (waypoint - from).norm();
+      from = waypoint;
+    }
+  }
+  summary_.flight_time = now - flight_began_;
+  summary_.max_speed = std::max(summary_.max_speed, state_.velocity.norm());
+  if (last_position_) summary_.path_length += (state_.position - *last_position_).norm();
+  last_position_ = state_.position;
+  if (stream_.active()) {
+    const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
+    summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
+  }
+}
+
+// Events for what changed: nothing happens silently, and nothing is said fifty times a second.
+void Companion::announce(double now) {
+  if (supervisor_.phase() != announced_phase_) {
+    announced_phase_ = supervisor_.phase();
+    event(now, "phase", std::string(to_string(announced_phase_)) +
+                            (supervisor_.done() ? ": " + std::string(to_string(supervisor_.outcome())) + ", " + supervisor_.reason() : ""));
+  }
+  if (supervisor_.waiting_for() != announced_waiting_) {
+    announced_waiting_ = supervisor_.waiting_for();
+    if (!announced_waiting_.empty()) event(now, "waiting", announced_waiting_);
+  }
+  if (supervisor_.hazard() != announced_hazard_) {
+    announced_hazard_ = supervisor_.hazard();
+    event(now, announced_hazard_.empty() ? "hazard_over" : "hazard", announced_hazard_);
+  }
+  const TrackSourceStatus tracks = parts_.tracks.status();
+  summary_.dropped_tracks = tracks.dropped_tracks;
+  const bool refused = tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks;
+  if (refused && std::floor(now) != std::floor(last_step_)) {  // once a second
+    announced_tracks_ = tracks;
+    event(now, "tracks_refused", tracks.last_refusal);
+  }
+}
+
+FlightSummary Companion::summary() const {
+  FlightSummary summary = summary_;
+  summary.outcome = supervisor_.outcome();
+  summary.reason = supervisor_.reason();
+  summary.missing_peer = supervisor_.missing_peer();
+  return summary;
+}
+
+}  // namespace jink::bridge

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The companion loop: tracks and state in, plan, setpoints out. The same code flies in `fly` and in `replay`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bridge/planner_task.hpp"
+#include "bridge/setpoint_stream.hpp"
+#include "bridge/supervisor.hpp"
+#include "bridge/track_source.hpp"
+#include "bridge/track_table.hpp"
+#include "bridge/vehicle_link.hpp"
+#include "config/mission.hpp"
+#include "config/settings.hpp"
+
+namespace jink::bridge {
+
+/// Who wants to know what the companion does: the flight log, the live line. Called from the loop, unlocked; times are the
+/// companion's clock. Must not block.
+class FlightObserver {
+ public:
+  virtual ~FlightObserver() = default;
+  virtual void on_state(double, const VehicleState&) {}
+  virtual void on_tracks(double, const std::vector<planner::Track>&) {}
+  virtual void on_plan(double, const PlanResult&) {}
+  virtual void on_setpoint(double, const Setpoint&) {}
+  virtual void on_event(double, std::string_view /*name*/, const std::string& /*detail*/) {}
+};
+
+/// p50, p99 and largest of a set of durations, ms; empty where there is none.
+struct Percentiles {
+  double p50 = 0.0, p99 = 0.0, max = 0.0;
+};
+std::optional<Percentiles> percentiles(std::vector<double> values);
+
+/// What a flight amounts to, as the companion saw it.
+struct FlightSummary {
+  Outcome outcome = Outcome::kNone;
+  std::string reason;
+  MissingPeer missing_peer = MissingPeer::kNone;
+  double flight_time = 0.0;  ///< from the take-off height (or engagement in the air) to the end of the flight
+  double path_length = 0.0;  ///< flown in that time, by the autopilot's estimate
+  double straight_length = 0.0;
+  double max_speed = 0.0;
+  double largest_tracking_error = 0.0;  ///< distance from the reference
+  std::uint64_t plans = 0;
+  std::uint64_t blocked_plans = 0;
+  std::uint64_t deadline_misses = 0;
+  std::uint64_t dropped_tracks = 0;
+  std::vector<double> plan_ms;
+  std::vector<double> track_to_setpoint_ms;
+};
+
+struct CompanionParts {
+  VehicleLink& link;
+  TrackSource& tracks;
+  PlannerTask& planner;
+  std::vector<FlightObserver*> observers;
+};
+
+/// Owns the picture of the flight; the parts outlive it. Not thread-safe: step() from one thread.
+class Companion {
+ public:
+  Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts);
+
+  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over.
+  bool step(double now);
+  /// Ends the flight as Ctrl-C does: brake, then HOLD.
+  void interrupt(double now) { supervisor_.stop(now, Outcome::kAborted, "interrupted"); }
+  /// Ends the flight with an outcome that only the world knows (a collision in replay).
+  void end(double now, Outcome outcome, const std::string& reason) { supervisor_.stop(now, outcome, reason); }
+
+  [[nodiscard]] const Supervisor& supervisor() const { return supervisor_; }
+  [[nodiscard]] FlightSummary summary() const;
+
+ private:
+  void take_tracks(double now);
+  void take_plan(double now);
+  void start_plan(double now);
+  void move(double now, const Decision& decision);
+  void measure(double now);
+  void announce(double now);
+  void next_waypoint(double now);
+  [[nodiscard]] FlightPicture picture(double now);
+  [[nodiscard]] double heading(double now);
+  [[nodiscard]] planner::Box volume(const Vec3& start) const;
+  void event(double now, std::string_view name, const std::string& detail);
+
+  config::Mission mission_;
+  config::Settings settings_;
+  CompanionParts parts_;
+  Supervisor supervisor_;
+  TrackTable table_;
+  SetpointStream stream_;
+  VehicleState state_;
+  Vec3 takeoff_point_ = Vec3::Zero();
+  std::size_t waypoint_ = 0;  // the one flown to
+  double last_plan_begun_ = -1.0;
+  double newest_plan_ = -1.0;
+  std::optional<double> unsent_track_;  // reception of the newest track in a plan whose first setpoint is still to be sent
+  double unsent_from_ = 0.0;
+  double yaw_ = 0.0;
+  bool yaw_known_ = false;
+  double last_step_ = -1.0;
+  Phase announced_phase_ = Phase::kDone;
+  std::string announced_waiting_, announced_hazard_;
+  TrackSourceStatus announced_tracks_;
+  planner::PlanStatus announced_status_ = planner::PlanStatus::kInvalid;
+  std::optional<Vec3> last_position_;
+  double flight_began_ = -1.0;
+  FlightSummary summary_;
+};
+
+}  // namespace jink::bridge

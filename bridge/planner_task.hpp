@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A planner that works while the setpoints go on. Two implementations: a thread, and virtual time.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "bridge/clock.hpp"
+#include "planner/horizon_planner.hpp"
+
+namespace jink::bridge {
+
+/// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
+struct PlanJob {
+  planner::PathRequest request;  ///< `tracks` is set by the task to the job's own
+  std::vector<planner::Track> tracks;
+  planner::TimedPath previous;  ///< times from `start` on
+  std::uint64_t number = 0;
+  double begun = 0.0;
+  double start = 0.0;
+  double newest_track = -1.0;  ///< reception of the newest track message that went in; negative: none
+};
+
+struct PlanResult {
+  planner::Plan plan;  ///< path times from `job.start` on
+  PlanJob job;
+  double ms = 0.0;       ///< spent planning: wall time, or the configured latency in virtual time
+  bool missed = false;   ///< it came after its own start
+};
+
+/// One job at a time.
+class PlannerTask {
+ public:
+  virtual ~PlannerTask() = default;
+  /// Precondition: not busy.
+  virtual void start(PlanJob job) = 0;
+  [[nodiscard]] virtual bool busy() const = 0;
+  /// The finished plan, once; nothing while the planner works. Throws what the planner threw.
+  [[nodiscard]] virtual std::optional<PlanResult> poll(double now) = 0;
+};
+
+struct PlannerTaskSettings {
+  planner::HorizonSettings horizon;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one for each core
+};
+
+/// Plans in a thread of its own with a pool of `threads`, until the generations are done or the deadline passes.
+class ThreadedPlanner final : public PlannerTask {
+ public:
+  ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock);
+  ~ThreadedPlanner() override;
+  void start(PlanJob job) override;
+  [[nodiscard]] bool busy() const override;
+  [[nodiscard]] std::optional<PlanResult> poll(double now) override;
+
+ private:
+  void work(const std::stop_token& stop);
+
+  PlannerTaskSettings settings_;
+  const Clock& clock_;
+  planner::HorizonPlanner planner_;
+  planner::WorkerPool pool_;
+  mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_
+  std::condition_variable_any wake_;
+  std::optional<PlanJob> job_;
+  std::optional<PlanResult> result_;
+  std::exception_ptr failure_;
+  bool busy_ = false;
+  std::jthread thread_;
+};
+
+/// Plans at once and hands the plan out `latency` later. The budget is the generations: the wall clock has no say.
+class VirtualPlanner final : public PlannerTask {
+ public:
+  VirtualPlanner(const PlannerTaskSettings& settings, double latency);
+  void start(PlanJob job) override;
+  [[nodiscard]] bool busy() const override { return result_.has_value(); }
+  [[nodiscard]] std::optional<PlanResult> poll(double now) override;
+
+ private:
+  PlannerTaskSettings settings_;
+  double latency_;
+  planner::HorizonPlanner planner_;
+  planner::WorkerPool pool_;
+  std::optional<PlanResult> result_;
+};
+
+}  // namespace jink::bridge

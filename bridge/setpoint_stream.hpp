@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is sent now: the plan sampled ahead of the autopilot's lag, or a stop.
+#pragma once
+
+#include <optional>
+
+#include "bridge/vehicle_link.hpp"
+#include "planner/trajectory.hpp"
+
+namespace jink::bridge {
+
+/// The reference that the vehicle is to be on, as a timed path in the companion's clock, and the setpoints that put it
+/// there. A new plan takes over at its own start; a brake takes over at once. Not thread-safe.
+class SetpointStream {
+ public:
+  /// `lead`: setpoints are the reference that much later, which makes up for the autopilot's lag. `braking`: deceleration of
+  /// a brake, m/s².
+  SetpointStream(double lead, double braking) : lead_(lead), braking_(braking) {}
+
+  /// Stay at a point. Forgets any plan.
+  void hold(const Vec3& position, double now);
+  /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed before.
+  void follow(planner::TimedPath path);
+  /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity, then
+  /// holds there. Does nothing while a brake is on.
+  void brake(double now, const std::optional<planner::TimedPoint>& measured = {});
+
+  /// Where the vehicle is to be at time t. Precondition: active().
+  [[nodiscard]] planner::TimedPoint reference(double t) const;
+  /// The setpoint to send at `now`, heading `yaw`.
+  [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
+
+  [[nodiscard]] bool active() const { return !current_.empty(); }
+  [[nodiscard]] bool braking() const { return is_braking_; }
+  /// The path followed at time t, for the planner's warm start; empty while holding or braking.
+  [[nodiscard]] planner::TimedPath plan(double t) const;
+
+ private:
+  double lead_;
+  double braking_;
+  bool is_plan_ = false;
+  bool is_braking_ = false;
+  planner::TimedPath current_;
+  planner::TimedPath next_;  // takes over at its first time
+};
+
+}  // namespace jink::bridge

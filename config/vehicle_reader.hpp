@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The `vehicle` key of scenarios and missions: a name or a map. Not a public header.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "config/yaml.hpp"
+
+namespace jink::config {
+
+struct NamedVehicle {
+  std::string name;  ///< "inline" where the file gives a map
+  planner::VehicleLimits limits;
+};
+
+/// Reads `value`, found in `file`. A name is looked up in `vehicles`; where that is empty, in vehicles/ beside the
+/// folder of `file`, then in vehicles/ of config_folder(). Throws ConfigError; an unknown name's error lists the names.
+NamedVehicle read_vehicle(const Value& value, const std::filesystem::path& file, const std::filesystem::path& vehicles);
+
+}  // namespace jink::config

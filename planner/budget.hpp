@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much an optimizer may work: a number of generations, and at most so much time.
+#pragma once
+
+#include <chrono>
+
+namespace jink::planner {
+
+/// Generations alone make a run repeatable bit by bit. With a deadline too, the run stops after the cycle in which the
+/// deadline passes; the generations that it then reports repeat it.
+struct Budget {
+  using Time = std::chrono::steady_clock::time_point;
+  int generations = 100;
+  Time deadline = Time::max();
+
+  [[nodiscard]] bool expired() const { return deadline != Time::max() && std::chrono::steady_clock::now() >= deadline; }
+};
+
+}  // namespace jink::planner

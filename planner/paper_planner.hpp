@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paper mode: problem (16) solved for one waypoint after the other, as [Paper] section 3.3 describes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "planner/budget.hpp"
+#include "planner/plan.hpp"
+#include "planner/settings.hpp"
+#include "planner/types.hpp"
+#include "planner/worker_pool.hpp"
+
+namespace jink::planner {
+
+struct PaperRequest {
+  Vec3 start = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  Box volume;                     ///< the path stays inside; start and target are
+  VehicleLimits vehicle;
+  std::span<const Track> tracks;  ///< valid at t = 0
+  OptimizerSettings optimizer;
+  PaperSettings settings;
+  std::uint64_t seed = 1;
+  Budget::Time deadline = Budget::Time::max();  ///< no step starts after it; the rest is then straight
+};
+
+/// The axis that the request is planned along: its own, but the path's where world X does not carry the mission (the
+/// extent in x is less than a third of the distance).
+Axis effective_axis(const PaperRequest& request);
+
+/// Plans the whole path at once. Each step's optimum is chosen from the front by modified TOPSIS with entropy weights among
+/// the solutions that violate nothing, or the least. The finished path is verified in continuous time: the status is kReaches
+/// only for a free one, else kBlocked. The same bits for any number of threads. Throws std::invalid_argument for settings
+/// that Pmomvo refuses or fewer than two waypoints.
+Plan plan_paper(const PaperRequest& request, WorkerPool& pool);
+
+}  // namespace jink::planner

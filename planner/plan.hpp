@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What planning gives back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "planner/trajectory.hpp"
+#include "planner/verifier.hpp"
+
+namespace jink::planner {
+
+enum class PlanStatus {
+  kReaches,       ///< free, verified, to the target
+  kProgresses,    ///< free, verified, for the time looked ahead; beyond that nothing is claimed
+  kBlocked,       ///< no free plan was found: the path is the least bad manoeuvre
+  kStartBlocked,  ///< the vehicle is inside an obstacle at the start
+  kInvalid        ///< the request holds a number that is not finite; there is no path
+};
+std::string_view to_string(PlanStatus status);
+
+struct Plan {
+  PlanStatus status = PlanStatus::kInvalid;
+  TimedPath path;
+  Verification verification;
+  std::int64_t evaluations = 0;
+  int generations = 0;                       ///< repeats the plan together with the seed
+  bool deadline_reached = false;
+  bool kept_previous = false;                ///< the plan before was kept
+  std::vector<std::array<double, 2>> front;  ///< the first two objectives of the (first) front
+};
+
+}  // namespace jink::planner

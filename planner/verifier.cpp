@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/verifier.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace jink::planner {
+namespace {
+
+/// |p0 + p1 t + p2 t²|² on [0, duration]: the squared distance of two bodies in relative constant acceleration.
+struct RelativeMotion {
+  Vec3 p0, p1, p2;
+  double duration = 0.0;
+
+  [[nodiscard]] Vec3 at(double t) const { return p0 + t * (p1 + t * p2); }
+  [[nodiscard]] double squared_distance(double t) const { return at(t).squaredNorm(); }
+  [[nodiscard]] double slope(double t) const { return 2.0 * at(t).dot(p1 + 2.0 * t * p2); }
+  [[nodiscard]] double speed(double t) const { return (p1 + 2.0 * t * p2).norm(); }
+};
+
+/// Sorted instants of [0, duration] between which the squared distance is monotone: the ends and every stationary point.
+/// The slope is a cubic; the two zeros of its derivative split it in monotone pieces, each with at most one root.
+struct MonotonePieces {
+  std::array<double, 5> t{};
+  int count = 0;
+
+  explicit MonotonePieces(const RelativeMotion& m) {
+    std::array<double, 4> split{0.0, m.duration, m.duration, m.duration};
+    int splits = 1;
+    // slope(t)/2 = c0 + c1 t + c2 t² + c3 t³
+    const double c1 = m.p1.squaredNorm() + 2.0 * m.p0.dot(m.p2);
+    const double c2 = 3.0 * m.p1.dot(m.p2);
+    const double c3 = 2.0 * m.p2.squaredNorm();
+    const double discriminant = c2 * c2 - 3.0 * c3 * c1;
+    if (c3 > 0.0 && discriminant > 0.0) {
+      const double root = std::sqrt(discriminant);
+      for (const double s : {(-c2 - root) / (3.0 * c3), (-c2 + root) / (3.0 * c3)}) {
+        if (s > split[static_cast<std::size_t>(splits - 1)] && s < m.duration) split[static_cast<std::size_t>(splits++)] = s;
+      }
+    }
+    split[static_cast<std::size_t>(splits)] = m.duration;
+    add(0.0);
+    for (int i = 0; i < splits; ++i) {
+      add_root(m, split[static_cast<std::size_t>(i)], split[static_cast<std::size_t>(i + 1)]);
+    }
+    add(m.duration);
+  }
+
+ private:
+  void add(double value) { t[static_cast<std::size_t>(count++)] = value; }
+
+  void add_root(const RelativeMotion& m, double low, double high) {
+    double at_low = m.slope(low);
+    const double at_high = m.slope(high);
+    if (!(at_low * at_high < 0.0)) return;
+    for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
+      const double middle = 0.5 * (low + high);
+      const double value = m.slope(middle);
+      if ((value < 0.0) == (at_low < 0.0)) {
+        low = middle;
+        at_low = value;
+      } else {
+        high = middle;
+      }
+    }
+    if (count < 4) add(0.5 * (low + high));
+  }
+};
+
+/// First instant of a monotonically falling piece at which the squared distance is below `limit`.
+double crossing(const RelativeMotion& m, double low, double high, double limit) {
+  for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
+    const double middle = 0.5 * (low + high);
+    (m.squared_distance(middle) < limit ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Folds one piece of relative motion, which starts at path time `t0`, into the result.
+void fold(const RelativeMotion& m, double t0, double radius, std::uint64_t id, Verification& result) {
+  const MonotonePieces pieces(m);
+  double previous = 0.0;
+  for (int i = 0; i < pieces.count; ++i) {
+    const double t = pieces.t[static_cast<std::size_t>(i)];
+    const double squared = m.squared_distance(t);
+    const double clearance = std::sqrt(squared) - radius;
+    if (clearance < result.min_clearance) {
+      result.min_clearance = clearance;
+      result.t_min_clearance = t0 + t;
+      result.nearest_id = id;
+    }
+    if (clearance < 0.0) {
+      const double contact = i == 0 ? 0.0 : crossing(m, previous, t, radius * radius);
+      if (!result.first_contact || t0 + contact < *result.first_contact) {
+        result.first_contact = t0 + contact;
+        result.contact_speed = m.speed(contact);
+      }
+    }
+    previous = t;
+  }
+}
+
+/// Obstacle position, velocity and acceleration `t` seconds after its track's instant.
+struct ObstacleAt {
+  Vec3 position, velocity, acceleration;
+
+  ObstacleAt(const Track& track, double t, double trust) {
+    const double s = t < trust ? t : trust;
+    velocity = track.velocity + s * track.acceleration;
+    position = track.position + s * (track.velocity + 0.5 * s * track.acceleration) + (t - s) * velocity;
+    acceleration = t < trust ? track.acceleration : Vec3::Zero();
+  }
+};
+
+/// One vehicle segment against one track, split where the prediction stops accelerating.
+void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track, const VerifierInput& input,
+                   Verification& result) {
+  const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
+  const double end = std::min(b.t, input.until);
+  const double change = input.tracks_time + input.acceleration_trust;
+  double t = a.t;
+  while (t < end) {
+    const double stop = (change > t && change < end) ? change : end;
+    const ObstacleAt obstacle(track, t - input.tracks_time, input.acceleration_trust);
+    const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
+                           -0.5 * obstacle.acceleration, stop - t};
+    fold(m, t, input.vehicle_radius + track.radius, track.id, result);
+    t = stop;
+  }
+}
+
+}  // namespace
+
+Verification verify(const VerifierInput& input) {
+  Verification result;
+  for (const TimedPoint& point : input.path) {
+    if (!point.position.allFinite() || !input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
+  }
+  for (const Track& track : input.tracks) {
+    if (input.path.size() == 1) {
+      const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, input.acceleration_trust);
+      fold({input.path[0].position - obstacle.position, Vec3::Zero(), Vec3::Zero(), 0.0}, input.path[0].t,
+           input.vehicle_radius + track.radius, track.id, result);
+    }
+    for (std::size_t i = 1; i < input.path.size(); ++i) {
+      check_segment(input.path[i - 1], input.path[i], track, input, result);
+    }
+  }
+  return result;
+}
+
+}  // namespace jink::planner

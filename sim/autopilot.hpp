@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulator's autopilot: modes, arming, take-off, landing and failsafes as PX4's SITL shows them. Pure logic in
+// virtual time and local ENU: no socket, no clock, no message. It owns and flies the vehicle.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/parameters.hpp"
+#include "sim/vehicle_model.hpp"
+
+namespace jink::sim {
+
+/// PX4's modes; the value is HEARTBEAT.custom_mode: main mode in bits 16 to 23, sub-mode of AUTO in bits 24 to 31.
+enum class FlightMode : std::uint32_t {
+  kManual = 0x00010000,
+  kAltitude = 0x00020000,
+  kPosition = 0x00030000,
+  kTakeoff = 0x02040000,
+  kHold = 0x03040000,
+  kReturn = 0x05040000,
+  kLand = 0x06040000,
+  kAcro = 0x00050000,
+  kOffboard = 0x00060000,
+  kStabilized = 0x00070000,
+};
+
+/// MAV_RESULT's values.
+enum class Result : std::uint8_t {
+  kAccepted = 0,
+  kTemporarilyRejected = 1,
+  kDenied = 2,
+  kUnsupported = 3,
+  kFailed = 4,
+};
+
+/// MAV_LANDED_STATE's values.
+enum class LandedState : std::uint8_t { kOnGround = 1, kInAir = 2, kTakeoff = 3, kLanding = 4 };
+
+/// What HEARTBEAT carries, in MAVLink's values.
+struct Heartbeat {
+  std::uint8_t base_mode = 0;
+  std::uint32_t custom_mode = 0;
+  std::uint8_t system_status = 0;
+};
+
+/// MAV_SEVERITY's values that are in use.
+enum class Severity : std::uint8_t { kCritical = 2, kWarning = 4, kInfo = 6 };
+
+struct StatusText {
+  Severity severity = Severity::kInfo;
+  std::string text;
+};
+
+struct AutopilotOptions {
+  planner::VehicleLimits limits{};
+  Vec3 position = Vec3::Zero();  ///< where it starts
+  double yaw = 90.0 * kDegree;   ///< counter-clockwise from east: PX4's SITL starts heading north
+  bool airborne = false;         ///< true: armed in HOLD at `position`; false: on the ground below it
+  double ground_height = 0.0;
+  double ready_delay = 4.3;  ///< from start until it may be armed, PX4's SITL; 0 and less: at once
+  int system_id = 1;
+  Cascade cascade{};
+};
+
+/// Not thread-safe: one thread steps and commands it. Commands act at once, setpoints with the next step.
+class Autopilot {
+ public:
+  /// Throws std::invalid_argument for unusable limits or a position or height that is not finite.
+  explicit Autopilot(const AutopilotOptions& options);
+
+  /// Advances by VehicleModel::kStep.
+  void step();
+  /// Seconds since it was started.
+  [[nodiscard]] double time() const { return static_cast<double>(steps_) * VehicleModel::kStep; }
+
+  // Commands: MAV_RESULT as PX4 answers it.
+  Result arm(bool force = false);
+  /// In the air refused unless forced: then the motors stop and it falls.
+  Result disarm(bool force = false);
+  /// PX4's DO_SET_MODE. An unknown main mode is accepted and ignored, as there.
+  Result set_mode(unsigned main_mode, unsigned sub_mode = 0);
+  /// Climbs to `height` (ENU z; none: MIS_TAKEOFF_ALT above the present one), then holds. Accepted disarmed: then it
+  /// takes off when armed.
+  Result takeoff(std::optional<double> height = std::nullopt);
+  Result land();
+  Result hold();
+  Result return_home();
+  /// Flies to a point, then holds there; refused on the ground.
+  Result reposition(const Vec3& position);
+  Result set_home(const Vec3& position);
+  /// A setpoint for OFFBOARD: keeps the stream alive whatever the mode. Refused, and no sign of life, unless each
+  /// axis has a position, a velocity or an acceleration and nothing is infinite.
+  Result offboard_setpoint(const Setpoint& setpoint);
+  /// A text to the ground stations, for what the edge above refuses.
+  void report(Severity severity, std::string text);
+  /// The true world says that it hit something: motors off for good, it falls.
+  void crash();
+
+  [[nodiscard]] const Motion& true_motion() const { return model_.motion(); }
+  /// What the vehicle believes and reports: the truth, as long as no estimator is modelled.
+  [[nodiscard]] const Motion& estimated_motion() const { return model_.motion(); }
+  [[nodiscard]] const VehicleModel& model() const { return model_; }
+  [[nodiscard]] Parameters& parameters() { return parameters_; }
+  [[nodiscard]] const Parameters& parameters() const { return parameters_; }
+  [[nodiscard]] const AutopilotOptions& options() const { return options_; }
+
+  /// The mode that flies now, a failsafe's included.
+  [[nodiscard]] FlightMode mode() const { return failsafe_ ? *failsafe_ : intended_mode_; }
+  /// The mode last asked for.
+  [[nodiscard]] FlightMode intended_mode() const { return intended_mode_; }
+  [[nodiscard]] bool armed() const { return armed_; }
+  [[nodiscard]] bool landed() const { return landed_; }
+  [[nodiscard]] bool crashed() const { return crashed_; }
+  [[nodiscard]] bool in_failsafe() const { return failsafe_.has_value(); }
+  [[nodiscard]] bool offboard_active() const { return armed_ && mode() == FlightMode::kOffboard; }
+  /// A valid setpoint came within the last COM_OF_LOSS_T.
+  [[nodiscard]] bool stream_live() const;
+  [[nodiscard]] bool ready() const { return time() >= options_.ready_delay; }
+  /// The health bit of SYS_STATUS: it could be armed, or go on flying, in this mode.
+  [[nodiscard]] bool prearm_ok() const;
+  [[nodiscard]] LandedState landed_state() const;
+  [[nodiscard]] Heartbeat heartbeat() const;
+  [[nodiscard]] const Vec3& home() const { return home_; }
+  /// What the vehicle follows now; nothing while the motors are off or idle.
+  [[nodiscard]] std::optional<Setpoint> active_setpoint() const;
+  /// The texts since the last call, oldest first (at most the last 64).
+  [[nodiscard]] std::vector<StatusText> take_status_texts();
+
+ private:
+  /// kLanded: rotors idle; kRamp: thrust comes up slowly after the take-off was asked for; kFlying.
+  enum class Phase { kLanded, kRamp, kFlying };
+
+  Result change_mode(FlightMode mode);
+  void enter_active_mode();
+  void disarm_now();
+
+  void update_failsafe();
+  void update_takeoff();
+  void update_landed();
+  void update_auto_disarm();
+  void finish_takeoff();
+  void touch_down();
+  [[nodiscard]] bool takeoff_wanted() const;
+  [[nodiscard]] bool descent_wanted() const;
+  [[nodiscard]] SpeedBounds bounds() const;
+
+  [[nodiscard]] Setpoint guide();
+  [[nodiscard]] Setpoint guide_hold() const;
+  [[nodiscard]] Setpoint guide_descent(double speed) const;
+  [[nodiscard]] Setpoint guide_return();
+  [[nodiscard]] double landing_speed() const;
+
+  AutopilotOptions options_;
+  Parameters parameters_;
+  VehicleModel model_;
+  std::int64_t steps_ = 0;
+
+  bool armed_ = false;
+  bool crashed_ = false;
+  double armed_at_ = 0.0;
+  FlightMode intended_mode_ = FlightMode::kHold;
+  FlightMode mode_after_disarm_ = FlightMode::kHold;  ///< the last one that does not forbid arming
+  std::optional<FlightMode> failsafe_;
+  FlightMode guided_mode_ = FlightMode::kHold;  ///< the one that the guidance state below belongs to
+
+  Setpoint offboard_;
+  std::optional<double> last_offboard_;
+
+  Phase phase_ = Phase::kLanded;
+  double ramp_started_ = 0.0;
+  bool landed_ = true;
+  bool has_flown_ = false;  ///< since it was armed
+  double landed_at_ = 0.0;
+  std::optional<double> settled_since_;  ///< on the ground and told to descend
+
+  Vec3 home_ = Vec3::Zero();
+  Vec3 hold_position_ = Vec3::Zero();
+  bool return_climbed_ = false;
+  bool return_arrived_ = false;
+  double takeoff_height_ = 0.0;
+  Setpoint active_setpoint_;
+  bool ready_reported_ = false;
+  std::vector<StatusText> texts_;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// jink fly: the bridge on a companion computer.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "bridge/clock.hpp"
+#include "bridge/companion.hpp"
+#include "bridge/dds_tracks.hpp"
+#include "bridge/mavsdk_link.hpp"
+#include "config/mission.hpp"
+#include "tools/command_line.hpp"
+#include "tools/flight_log.hpp"
+#include "tools/summaries.hpp"
+
+namespace jink::tools {
+namespace {
+
+struct FlyOptions {
+  CommonOptions common;
+  std::string mission;
+  std::string log;
+};
+
+/// Says what happens: events as lines, progress as a live line on a terminal and a line every few seconds elsewhere.
+class Teller final : public bridge::FlightObserver {
+ public:
+  Teller(const config::Mission& mission, const Printer& printer) : mission_(mission), printer_(printer) {}
+
+  void on_event(double t, std::string_view name, const std::string& detail) override {
+    printer_.line(fmt::format("[{:6.1f} s] {}{}{}", t, name, detail.empty() ? "" : ": ", detail));
+  }
+  void on_tracks(double, const std::vector<planner::Track>& tracks) override {
+    tracks_ = tracks.size();
+    nearest_ = planner::kInfinity;
+    for (const planner::Track& track : tracks) {
+      nearest_ = std::min(nearest_, (track.position - position_).norm() - track.radius - mission_.vehicle.radius);
+    }
+  }
+  void on_plan(double, const bridge::PlanResult& result) override { plan_ms_ = result.ms; }
+  void on_state(double t, const bridge::VehicleState& state) override {
+    position_ = state.position;
+    const double period = printer_.terminal() ? 0.2 : 2.0;
+    if (state.position_stamp < 0.0 || t - last_ < period) return;
+    last_ = t;
+    const std::string text = fmt::format(
+        "[{:6.1f} s] {}  {:.1f} m to go  {:.1f} m/s  height {:.1f} m  {} tracks, nearest {}  plan {:.0f} ms", t,
+        bridge::to_string(state.mode), (mission_.waypoints.back() - state.position).norm(), state.velocity.norm(),
+        state.position.z(), tracks_, std::isfinite(nearest_) ? fmt::format("{:.1f} m", nearest_) : "-", plan_ms_);
+    printer_.terminal() ? printer_.live(text) : printer_.line(text);
+  }
+
+ private:
+  const config::Mission& mission_;
+  const Printer& printer_;
+  planner::Vec3 position_ = planner::Vec3::Zero();
+  std::size_t tracks_ = 0;
+  double nearest_ = planner::kInfinity;
+  double plan_ms_ = 0.0;
+  double last_ = -1.0;
+};
+
+nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options, const config::Settings& settings) {
+  const auto vector = [](const planner::Vec3& v) { return nlohmann::ordered_json::array({v.x(), v.y(), v.z()}); };
+  return {{"mission", mission.name}, {"seed", options.common.seed}, {"target", vector(mission.waypoints.back())},
+          {"vehicle", {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
+          {"world", {{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}}},
+          {"parameters", parameters_of(settings)}};
+}
+
+/// Turns the loop at the setpoints' rate until the flight is over; Ctrl-C brakes and hands over to HOLD.
+void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
+  auto next = begun;
+  while (companion.step(clock.now())) {
+    if (interrupted()) companion.interrupt(clock.now());
+    next += period;
+    // A turn that came late is not made up for: setpoints in a burst say nothing.
+    const auto now = std::chrono::steady_clock::now();
+    if (next < now) next = now;
+    std::this_thread::sleep_until(next);
+  }
+}
+
+int exit_code(const bridge::FlightSummary& flight) {
+  if (flight.missing_peer != bridge::MissingPeer::kNone) return kExitMissingPeer;
+  return flight.outcome == bridge::Outcome::kReached ? kExitReached : kExitFailed;
+}
+
+int run(const FlyOptions& options) {
+  const Printer printer(options.common.json == "-");
+  const config::Settings settings = options.common.settings();
+  const config::Mission mission = config::load_mission(options.mission);
+  catch_signals();
+  const bridge::SteadyClock clock;
+  Teller teller(mission, printer);
+  std::vector<bridge::FlightObserver*> observers{&teller};
+  std::unique_ptr<FlightLog> log;
+  std::unique_ptr<bridge::MavsdkLink> link;
+  try {
+    if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
+    link = std::make_unique<bridge::MavsdkLink>(mission.connection, clock);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+  if (log) observers.push_back(log.get());
+  bridge::DdsTrackReader tracks(mission.dds_domain, clock);
+  bridge::ThreadedPlanner planner({settings.horizon, options.common.seed, options.common.thread_count()}, clock);
+  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});
+  printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name, mission.waypoints.size(),
+                           mission.waypoints.size() == 1 ? "" : "s", mission.connection, mission.dds_domain, options.common.seed));
+  run_loop(companion, clock, settings.companion.setpoint_rate_hz);
+
+  if (log) log->close();
+  const bridge::FlightSummary flight = companion.summary();
+  const auto summary = flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
+  write_json(options.common.json, summary);
+  if (flight.missing_peer != bridge::MissingPeer::kNone) {
+    std::fprintf(stderr, "jink: %s; %s\n", flight.reason.c_str(),
+                 flight.missing_peer == bridge::MissingPeer::kAutopilot
+                     ? "start `jink sim SCENARIO`, PX4 SITL, or check the mission's connection"
+                     : "start `jink sim SCENARIO` or your track writer, or check the mission's dds.domain");
+  } else {
+    printer.line(describe_flight(summary));
+  }
+  return exit_code(flight);
+}
+
+}  // namespace
+
+Subcommand add_fly(CLI::App& jink) {
+  CLI::App* app = jink.add_subcommand("fly", "fly a mission against the simulator, PX4 SITL or a vehicle");
+  const auto options = std::make_shared<FlyOptions>();
+  app->add_option("MISSION", options->mission, "mission file")->required();
+  app->add_option("--log", options->log, "write a flight log (JSON Lines)");
+  options->common.add_to(*app);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace jink::tools

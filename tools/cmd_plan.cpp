@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// jink plan: the whole path at once, open loop, in the world as it is known at t = 0.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "config/scenario.hpp"
+#include "planner/horizon_planner.hpp"
+#include "planner/indicators.hpp"
+#include "planner/paper_planner.hpp"
+#include "sim/world.hpp"
+#include "tools/command_line.hpp"
+#include "tools/summaries.hpp"
+
+namespace jink::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// In `plan` the tracks are taken as exact, so what is left to keep is the verifier's own accuracy and a hand's breadth.
+constexpr double kOpenLoopMargin = 0.05;  // m
+
+struct PlanOptions {
+  CommonOptions common;
+  std::string scenario;
+  std::string mode = "horizon";
+  std::string algorithm = "pmomvo";
+  int slaves = 0, sharing = -1, population = 0, iterations = 0, waypoints = 0;  // what was not given stays as configured
+  double deadline_ms = 0.0;
+};
+
+/// The numbers of the optimizer that a mode uses, in the configuration.
+struct Knobs {
+  int& slaves;
+  int& sharing;
+  int& population;
+  int& iterations;
+  int& waypoints;
+};
+
+Knobs knobs(config::Settings& s, bool paper) {
+  if (paper) return {s.optimizer.slaves, s.optimizer.sharing, s.optimizer.population, s.optimizer.iterations, s.paper.waypoints};
+  return {s.horizon.slaves, s.horizon.sharing, s.horizon.population, s.horizon.generations, s.horizon.waypoints};
+}
+
+void apply(const PlanOptions& options, Knobs k) {
+  if (options.algorithm == "momvo") {
+    k.slaves = 1;
+    k.sharing = 0;
+  }
+  if (options.slaves > 0) k.slaves = options.slaves;
+  if (options.sharing >= 0) k.sharing = options.sharing;
+  if (options.population > 0) k.population = options.population;
+  if (options.iterations > 0) k.iterations = options.iterations;
+  if (options.waypoints > 0) k.waypoints = options.waypoints;
+  if (k.population < k.slaves) {
+    throw UsageError(fmt::format("--population: {} leaves one of {} slaves without a universe; it is to be {} or more",
+                                 k.population, k.slaves, k.slaves));
+  }
+}
+
+/// The volume that a plan may use: the scenario's world, or everything above the lowest of ground, start and target.
+planner::Box volume_of(const config::Scenario& scenario) {
+  if (scenario.world) return *scenario.world;
+  planner::Box box;
+  box.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
+  return box;
+}
+
+planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& scenario, const config::Settings& settings,
+                            const std::vector<planner::Track>& tracks, planner::WorkerPool& pool, const Printer& printer) {
+  const auto deadline = options.deadline_ms > 0.0
+                            ? std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                                     std::chrono::duration<double, std::milli>(options.deadline_ms))
+                            : planner::Budget::Time::max();
+  if (options.mode == "paper") {
+    const planner::PaperRequest request{scenario.start,     scenario.target, volume_of(scenario),   scenario.vehicle, tracks,
+                                        settings.optimizer, settings.paper,  options.common.seed, deadline};
+    if (planner::effective_axis(request) != settings.paper.axis) {
+      printer.line("note: the mission is steep in world X, so the waypoints are placed along the path's own axis");
+    }
+    return planner::plan_paper(request, pool);
+  }
+  planner::HorizonPlanner planner(settings.horizon);
+  planner::OpenLoopRequest request;
+  request.path.position = scenario.start;
+  request.path.target = scenario.target;
+  request.path.volume = volume_of(scenario);
+  request.path.vehicle = scenario.vehicle;
+  request.path.tracks = tracks;
+  request.path.margin = kOpenLoopMargin;
+  request.time_limit = scenario.time_limit;
+  return planner::plan_open_loop(planner, request, options.common.seed, {settings.horizon.generations, deadline}, pool);
+}
+
+std::string outcome_of(const planner::Plan& plan) {
+  if (plan.status == planner::PlanStatus::kStartBlocked) return "start_blocked";
+  if (plan.status == planner::PlanStatus::kReaches) return "reached";
+  return plan.deadline_reached ? "deadline" : "unreachable";
+}
+
+Json path_json(const planner::TimedPath& path) {
+  Json list = Json::array();
+  for (const planner::TimedPoint& p : path) list.push_back({p.t, p.position.x(), p.position.y(), p.position.z()});
+  return list;
+}
+
+int run(PlanOptions options) {
+  const Printer printer(options.common.json == "-");
+  config::Settings settings = options.common.settings();
+  const config::Scenario scenario = config::load_scenario(options.scenario);
+  const bool paper = options.mode == "paper";
+  const Knobs k = knobs(settings, paper);
+  apply(options, k);
+
+  const sim::World world(scenario);
+  std::vector<planner::Track> tracks;
+  for (int i = 0; i < world.obstacle_count(); ++i) tracks.push_back(world.exact_track(i, 0.0));
+  planner::WorkerPool pool(options.common.thread_count());
+  const auto begun = std::chrono::steady_clock::now();
+  const planner::Plan plan = plan_scenario(options, scenario, settings, tracks, pool, printer);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+
+  const std::string outcome = outcome_of(plan);
+  const double length = planner::path_length(plan.path);
+  const double straight = (scenario.target - scenario.start).norm();
+  const double flight_time = plan.path.empty() ? 0.0 : plan.path.back().t;
+  const double slr = planner::straight_line_rate(length, straight);
+  Json front = Json::array();
+  for (const auto& f : plan.front) front.push_back({f[0], f[1]});
+  write_json(options.common.json,
+             {{"format", "jink-plan/1"}, {"scenario", scenario.name}, {"mode", options.mode}, {"algorithm", options.algorithm},
+              {"seed", options.common.seed}, {"threads", pool.threads()}, {"slaves", k.slaves}, {"sharing", k.sharing},
+              {"population", k.population}, {"iterations", k.iterations}, {"outcome", outcome}, {"path", path_json(plan.path)},
+              {"path_length", length}, {"straight_length", straight}, {"slr", finite_or_null(slr)},
+              {"flight_time_s", flight_time}, {"min_clearance", finite_or_null(plan.verification.min_clearance)},
+              {"evaluations", plan.evaluations}, {"planning_time_s", seconds}, {"front", front}});
+  printer.line(fmt::format("scenario {}: {} ({} mode, {}, seed {}, {} threads)", scenario.name, outcome, options.mode,
+                           options.algorithm, options.common.seed, pool.threads()));
+  printer.line(fmt::format("  path {:.3f} m of straight {:.3f} m (SLR {:.5f}), flight time {:.2f} s, {} points", length, straight, slr,
+                           flight_time, plan.path.size()));
+  const bool obstacles = std::isfinite(plan.verification.min_clearance);
+  printer.line(fmt::format("  smallest clearance {}; {} evaluations in {:.1f} ms",
+                           obstacles ? fmt::format("{:.3f} m at t = {:.2f} s, to obstacle {}", plan.verification.min_clearance,
+                                                   plan.verification.t_min_clearance, plan.verification.nearest_id)
+                                     : "unlimited, no obstacles",
+                           plan.evaluations, 1e3 * seconds));
+  return outcome == "reached" ? kExitReached : kExitFailed;
+}
+
+}  // namespace
+
+Subcommand add_plan(CLI::App& jink) {
+  CLI::App* app = jink.add_subcommand("plan", "plan a scenario's whole path at once, open loop");
+  const auto options = std::make_shared<PlanOptions>();
+  app->add_option("SCENARIO", options->scenario, "scenario file")->required();
+  app->add_option("--mode", options->mode, "horizon: the remaining path at once; paper: one waypoint after the other")
+      ->check(CLI::IsMember({"paper", "horizon"}))->capture_default_str();
+  app->add_option("--algorithm", options->algorithm, "pmomvo, or momvo (one slave, no sharing)")
+      ->check(CLI::IsMember({"pmomvo", "momvo"}))->capture_default_str();
+  app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->check(CLI::Range(1, 64));
+  app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")->check(CLI::Range(0, 1000));
+  app->add_option("--population", options->population, "universes of all slaves together, 1 to 100000")->check(CLI::Range(1, 100000));
+  app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")->check(CLI::Range(1, 1000000));
+  app->add_option("--waypoints", options->waypoints, "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
+      ->check(CLI::Range(1, 1000));
+  app->add_option("--deadline-ms", options->deadline_ms, "stop planning after so many ms of wall time (default: no deadline)")
+      ->check(CLI::Range(0.001, 1e9));
+  options->common.add_to(*app);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace jink::tools

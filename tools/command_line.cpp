@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/command_line.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <system_error>
+#include <thread>
+
+namespace jink::tools {
+namespace {
+
+std::atomic<bool> g_interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+constexpr std::int64_t kMostThreads = 256;
+
+}  // namespace
+
+void CommonOptions::add_to(CLI::App& app) {
+  app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")->capture_default_str();
+  app.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
+      ->check(CLI::Range(std::int64_t{1}, kMostThreads));
+  app.add_option("--config", config, "planner parameters (default: config/planner.yaml)");
+  app.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated")->allow_extra_args(false);
+  app.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr");
+}
+
+config::Settings CommonOptions::settings() const {
+  return config::load_settings(config.empty() ? config::config_folder() / "planner.yaml" : std::filesystem::path(config),
+                               overrides);
+}
+
+int CommonOptions::thread_count() const {
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void Printer::line(const std::string& text) const {
+  if (live_) std::fputs("\r\033[K", file_);
+  live_ = false;
+  std::fprintf(file_, "%s\n", text.c_str());
+  std::fflush(file_);
+}
+
+bool Printer::terminal() const { return isatty(fileno(file_)) == 1; }
+
+void Printer::live(const std::string& text) const {
+  if (!terminal()) return;
+  std::fprintf(file_, "\r\033[K%s", text.c_str());
+  std::fflush(file_);
+  live_ = true;
+}
+
+void write_json(const std::string& file, const nlohmann::ordered_json& summary) {
+  if (file.empty()) return;
+  const std::string text = summary.dump() + "\n";
+  if (file == "-") {
+    std::cout << text << std::flush;
+    return;
+  }
+  const std::string unfinished = file + ".part";
+  {
+    std::ofstream out(unfinished);
+    out << text << std::flush;
+    if (!out) throw UsageError("--json: '" + file + "' cannot be written");
+  }
+  std::error_code error;
+  std::filesystem::rename(unfinished, file, error);
+  if (error) {
+    std::filesystem::remove(unfinished, error);
+    throw UsageError("--json: '" + file + "' cannot be written");
+  }
+}
+
+void catch_signals() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { g_interrupted.store(true); };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return g_interrupted.load(); }
+
+}  // namespace jink::tools

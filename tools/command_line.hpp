@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the subcommands share: common options, exit codes, signals, where output goes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "config/settings.hpp"
+
+namespace jink::tools {
+
+/// Contracts, "Exit codes".
+enum ExitCode : int { kExitReached = 0, kExitFailed = 1, kExitUsage = 2, kExitMissingPeer = 3 };
+
+/// Bad usage or a file that cannot be read or written: exit code 2 with this one line.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Options that every flying and planning command takes.
+struct CommonOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one for each core
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string json;
+
+  void add_to(CLI::App& app);
+  /// The planner's parameters: the file, then the overrides. Throws config::ConfigError.
+  [[nodiscard]] config::Settings settings() const;
+  /// `threads`, or the number of cores.
+  [[nodiscard]] int thread_count() const;
+};
+
+/// Text for people: stdout, but stderr where the JSON summary goes to stdout.
+class Printer {
+ public:
+  explicit Printer(bool to_stderr) : file_(to_stderr ? stderr : stdout) {}
+  void line(const std::string& text) const;
+  [[nodiscard]] bool terminal() const;
+  /// Rewrites the present line of a terminal; nothing elsewhere.
+  void live(const std::string& text) const;
+
+ private:
+  std::FILE* file_;
+  mutable bool live_ = false;
+};
+
+/// Writes a summary as one object: to stdout for "-", else to the file, which appears whole or not at all. Does nothing for
+/// an empty name. Throws UsageError.
+void write_json(const std::string& file, const nlohmann::ordered_json& summary);
+
+/// From now on SIGINT and SIGTERM set a flag instead of ending the process.
+void catch_signals();
+/// True once one came.
+bool interrupted();
+
+/// A subcommand: its options are in `app`; `run` does it and returns the exit code.
+struct Subcommand {
+  CLI::App* app;
+  std::function<int()> run;
+};
+Subcommand add_plan(CLI::App& jink);
+Subcommand add_replay(CLI::App& jink);
+Subcommand add_sim(CLI::App& jink);
+Subcommand add_fly(CLI::App& jink);
+Subcommand add_report(CLI::App& jink);
+
+}  // namespace jink::tools

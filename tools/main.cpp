@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The jink executable: picks the subcommand and turns what goes wrong into one line and an exit code.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "config/error.hpp"
+#include "tools/command_line.hpp"
+
+namespace {
+
+using namespace jink::tools;
+
+constexpr const char* kFooter =
+    "Exit codes: 0 target reached, nothing hit; 1 the flight or the plan failed; 2 bad usage, file or value;\n"
+    "3 a peer (autopilot, obstacle tracks) did not show up.\n"
+    "`jink COMMAND --help` tells more. First flight: tools/demo.sh";
+
+int complain(const std::string& message) {
+  std::string line = message.substr(0, message.find_last_not_of(" \n") + 1);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::fprintf(stderr, "jink: %s\n", line.c_str());
+  return kExitUsage;
+}
+
+int run(int argc, char** argv) {
+  CLI::App jink("jink plans collision-free paths for a drone among moving obstacles, and flies them.", "jink");
+  jink.footer(kFooter);
+  jink.set_version_flag("--version", std::string("jink ") + JINK_VERSION);
+  jink.require_subcommand(1);
+  const std::vector<Subcommand> commands{add_plan(jink), add_replay(jink), add_sim(jink), add_fly(jink), add_report(jink)};
+  try {
+    jink.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return jink.exit(success);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    return complain(std::string(error.what()) + " (see `jink --help`)");
+  }
+  const auto chosen = std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
+  return chosen->run();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const jink::config::ConfigError& error) {
+    return complain(error.what());
+  } catch (const UsageError& error) {
+    return complain(error.what());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "jink: %s\n", error.what());
+    return kExitFailed;
+  }
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/summaries.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "planner/indicators.hpp"
+#include "tools/flight_log.hpp"
+
+namespace jink::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json percentiles_json(const std::vector<double>& values) {
+  const auto p = bridge::percentiles(values);
+  if (!p) return {{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
+  return {{"p50", p->p50}, {"p99", p->p99}, {"max", p->max}};
+}
+
+Json vector(const planner::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+std::string number(const Json& value, const char* unit) {
+  return value.is_number() ? fmt::format("{:.2f} {}", value.get<double>(), unit) : std::string("unknown");
+}
+
+}  // namespace
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json flight_summary(const std::string& kind, const std::string& name, std::uint64_t seed,
+                    const bridge::FlightSummary& flight, std::optional<double> min_clearance) {
+  Json summary{{"format", "jink-flight/1"}};
+  summary[kind] = name;
+  summary["seed"] = seed;
+  summary["outcome"] = bridge::to_string(flight.outcome);
+  summary["reason"] = flight.reason;
+  summary["flight_time_s"] = flight.flight_time;
+  summary["path_length"] = flight.path_length;
+  summary["straight_length"] = flight.straight_length;
+  summary["slr"] = finite_or_null(planner::straight_line_rate(flight.path_length, flight.straight_length));
+  summary["min_clearance"] = min_clearance ? finite_or_null(*min_clearance) : Json(nullptr);
+  summary["max_speed"] = flight.max_speed;
+  summary["plans"] = flight.plans;
+  summary["deadline_misses"] = flight.deadline_misses;
+  summary["plan_ms"] = percentiles_json(flight.plan_ms);
+  summary["track_to_setpoint_ms"] = percentiles_json(flight.track_to_setpoint_ms);
+  summary["blocked_plans"] = flight.blocked_plans;
+  summary["dropped_tracks"] = flight.dropped_tracks;
+  summary["max_tracking_error"] = flight.largest_tracking_error;
+  return summary;
+}
+
+std::string describe_flight(const Json& s) {
+  const std::string name = s.contains("scenario") ? "scenario " + s["scenario"].get<std::string>() : "mission " + s["mission"].get<std::string>();
+  std::string text = fmt::format("{}: {} ({})\n", name, s["outcome"].get<std::string>(), s["reason"].get<std::string>());
+  text += fmt::format("  flown {} in {}, straight {}; fastest {}\n", number(s["path_length"], "m"), number(s["flight_time_s"], "s"),
+                      number(s["straight_length"], "m"), number(s["max_speed"], "m/s"));
+  if (!s["min_clearance"].is_null()) text += fmt::format("  smallest clearance {}\n", number(s["min_clearance"], "m"));
+  text += fmt::format("  {} plans, {} blocked, {} late; plan time p50 {}, p99 {}; track to setpoint p50 {}, p99 {}",
+                      s["plans"].get<std::uint64_t>(), s["blocked_plans"].get<std::uint64_t>(),
+                      s["deadline_misses"].get<std::uint64_t>(), number(s["plan_ms"]["p50"], "ms"),
+                      number(s["plan_ms"]["p99"], "ms"), number(s["track_to_setpoint_ms"]["p50"], "ms"),
+                      number(s["track_to_setpoint_ms"]["p99"], "ms"));
+  return text;
+}
+
+Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const config::Settings& settings) {
+  Json header{{"scenario", scenario.name}, {"seed", seed}, {"start", vector(scenario.start)}, {"target", vector(scenario.target)},
+              {"time_limit", scenario.time_limit},
+              {"vehicle", {{"name", scenario.vehicle_name}, {"radius", scenario.vehicle.radius}, {"max_speed", scenario.vehicle.max_speed}}},
+              {"world", nullptr}};
+  if (scenario.world) header["world"] = {{"min", vector(scenario.world->min)}, {"max", vector(scenario.world->max)}};
+  header["parameters"] = parameters_of(settings);
+  return header;
+}
+
+}  // namespace jink::tools
