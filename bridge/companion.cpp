@@ -44,7 +44,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       parts_(std::move(parts)),
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
-      stream_(settings.companion.setpoint_lead, settings.horizon.braking) {}
+      stream_({settings.companion.setpoint_lead, settings.companion.drag, settings.horizon.braking}) {}
 
 void Companion::event(double now, std::string_view name, const std::string& detail) {
   for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
@@ -129,7 +129,7 @@ void Companion::start_plan(double now) {
   PlanJob job;
   job.number = summary_.plans;
   job.begun = now;
-  job.start = now + 1e-3 * companion.planner_latency_ms;
+  job.start = now + parts_.planner.latency();
   job.newest_track = table_.newest_message();
   job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
 

@@ -40,6 +40,8 @@ class PlannerTask {
   /// Precondition: not busy.
   virtual void start(PlanJob job) = 0;
   [[nodiscard]] virtual bool busy() const = 0;
+  /// How long after its beginning a plan can be expected; its path starts then.
+  [[nodiscard]] virtual double latency() const = 0;
   /// The finished plan, once; nothing while the planner works. Throws what the planner threw.
   [[nodiscard]] virtual std::optional<PlanResult> poll(double now) = 0;
 };
@@ -57,9 +59,11 @@ class ThreadedPlanner final : public PlannerTask {
   ~ThreadedPlanner() override;
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override;
+  [[nodiscard]] double latency() const override { return 1e-3 * settings_.horizon.deadline_ms + kHandling; }
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:
+  static constexpr double kHandling = 0.03;  // s: the last cycle after the deadline, and a turn of the loop
   void work(const std::stop_token& stop);
 
   PlannerTaskSettings settings_;
@@ -81,6 +85,7 @@ class VirtualPlanner final : public PlannerTask {
   VirtualPlanner(const PlannerTaskSettings& settings, double latency);
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override { return result_.has_value(); }
+  [[nodiscard]] double latency() const override { return latency_; }
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:

@@ -38,9 +38,9 @@ void SetpointStream::brake(double now, const std::optional<planner::TimedPoint>&
   double t = now;
   while (velocity.norm() > kAtRest) {
     const double speed = velocity.norm();
-    const double next_speed = std::max(0.0, speed - braking_ * kBrakeStep);
+    const double next_speed = std::max(0.0, speed - settings_.braking * kBrakeStep);
     const Vec3 direction = velocity / speed;
-    stop.push_back({t, position, velocity, -braking_ * direction});
+    stop.push_back({t, position, velocity, -settings_.braking * direction});
     position += 0.5 * (speed + next_speed) * kBrakeStep * direction;
     velocity = next_speed * direction;
     t += kBrakeStep;
@@ -58,8 +58,8 @@ planner::TimedPoint SetpointStream::reference(double t) const {
 }
 
 Setpoint SetpointStream::setpoint(double now, double yaw) const {
-  const planner::TimedPoint point = reference(now + lead_);
-  return {point.position, point.velocity, point.acceleration, yaw};
+  const planner::TimedPoint point = reference(now + settings_.lead);
+  return {point.position, point.velocity, point.acceleration + settings_.drag * point.velocity, yaw};
 }
 
 planner::TimedPath SetpointStream::plan(double t) const {

@@ -13,9 +13,12 @@ namespace jink::bridge {
 /// there. A new plan takes over at its own start; a brake takes over at once. Not thread-safe.
 class SetpointStream {
  public:
-  /// `lead`: setpoints are the reference that much later, which makes up for the autopilot's lag. `braking`: deceleration of
-  /// a brake, m/s².
-  SetpointStream(double lead, double braking) : lead_(lead), braking_(braking) {}
+  struct Settings {
+    double lead = 0.0;     ///< s: setpoints are the reference that much later, which makes up for the autopilot's lag
+    double drag = 0.0;     ///< 1/s: the acceleration of a setpoint makes up for this deceleration per speed
+    double braking = 2.0;  ///< m/s², deceleration of a brake
+  };
+  explicit SetpointStream(const Settings& settings) : settings_(settings) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
@@ -36,8 +39,7 @@ class SetpointStream {
   [[nodiscard]] planner::TimedPath plan(double t) const;
 
  private:
-  double lead_;
-  double braking_;
+  Settings settings_;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::TimedPath current_;

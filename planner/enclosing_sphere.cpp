@@ -19,6 +19,8 @@ constexpr double kDependent = 1e-14;
 constexpr int kMaxExchanges = 1000;
 
 struct PointList {
+  PointList() { points.fill(Vec3::Zero()); }  // Eigen's own default leaves them unset
+
   std::array<Vec3, kMaxBasis + 1> points;
   std::size_t size = 0;
 };

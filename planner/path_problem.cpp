@@ -11,8 +11,7 @@
 namespace jink::planner {
 namespace {
 
-constexpr double kResponse = 0.2;       // s, in which a wished velocity is reached where the acceleration allows
-constexpr double kShortestAim = 0.3;    // s, the least time in which a waypoint is aimed at
+constexpr double kCatchUp = 0.4;        // s, in which a distance from the wished position is made good
 constexpr double kArrival = 0.05;       // m, where a path is at the target
 constexpr double kNear = 0.3;           // m, where time stops counting
 constexpr double kShortLeg = 0.1;       // m, legs below have no direction
@@ -39,10 +38,10 @@ PathProblem::PathProblem(const HorizonSettings& settings)
       steps_(steps_per_leg_ * settings.waypoints),
       lower_(index(3 * settings.waypoints), -1.0),
       upper_(lower_.size(), 1.0),
-      undisturbed_(index(settings.waypoints)),
-      ahead_(undisturbed_.size()),
-      behind_(undisturbed_.size()),
-      aside_(undisturbed_.size()) {
+      undisturbed_(index(steps_ + 1)),
+      ahead_(index(settings.waypoints)),
+      behind_(ahead_.size()),
+      aside_(ahead_.size()) {
   assert(settings.waypoints > 0 && settings.step > 0.0 && steps_ <= kMaxSteps);
 }
 
@@ -69,13 +68,15 @@ void PathProblem::undisturbed_flight() {
     distance = std::min(frame_.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
     if (frame_.length - distance > kNear) undisturbed_time_ = step * settings_.step;
-    if (step % steps_per_leg_ == 0) undisturbed_[index(step / steps_per_leg_ - 1)] = distance;
+    undisturbed_[index(step)] = distance;
   }
   undisturbed_time_ += (frame_.length - distance) / cruise;
   for (int k = 0; k < settings_.waypoints; ++k) {
-    const double t = (k + 1) * steps_per_leg_ * settings_.step;
-    ahead_[index(k)] = std::max(kArrival, std::min(frame_.length, vehicle.max_speed * t) - undisturbed_[index(k)]);
-    behind_[index(k)] = undisturbed_[index(k)] + std::min(settings_.back_range, vehicle.max_speed * t);
+    const int step = (k + 1) * steps_per_leg_;
+    const double t = step * settings_.step;
+    const double along = undisturbed_[index(step)];
+    ahead_[index(k)] = std::max(kArrival, std::min(frame_.length, vehicle.max_speed * t) - along);
+    behind_[index(k)] = along + std::min(settings_.back_range, vehicle.max_speed * t);
     aside_[index(k)] = std::min(settings_.lateral_range, vehicle.max_speed * t);
   }
 }
@@ -118,37 +119,49 @@ void PathProblem::predict_obstacles() {
   }
 }
 
-Vec3 PathProblem::waypoint(std::span<const double> x, int k) const {
-  const std::size_t i = index(k);
-  const double along = undisturbed_[i] + x[3 * i] * (x[3 * i] > 0.0 ? ahead_[i] : behind_[i]);
-  const Vec3 p = frame_.to_enu({along, x[3 * i + 1] * aside_[i], x[3 * i + 2] * aside_[i]});
-  return p.cwiseMax(request_.volume.min).cwiseMin(request_.volume.max);
+// ENU offset from undisturbed flight at waypoint k (0: the present), moved into the volume where it leads out of it.
+Vec3 PathProblem::offset(std::span<const double> x, int k) const {
+  if (k == 0) return Vec3::Zero();
+  const std::size_t i = index(k - 1);
+  const double along = x[3 * i] * (x[3 * i] > 0.0 ? ahead_[i] : behind_[i]);
+  const Vec3 base = undisturbed(k * steps_per_leg_);
+  const Vec3 wish = base + along * frame_.axis + x[3 * i + 1] * aside_[i] * frame_.left + x[3 * i + 2] * aside_[i] * frame_.up;
+  return wish.cwiseMax(request_.volume.min).cwiseMin(request_.volume.max) - base;
 }
 
-void PathProblem::advance(Flight& flight, const Vec3& goal, double time_left, double speed_limit) const {
+void PathProblem::advance(Flight& flight, const Vec3& wish) const {
   const VehicleLimits& vehicle = request_.vehicle;
-  Vec3 wish = limited((goal - flight.position) / std::max(time_left, kShortestAim), speed_limit);
-  if (std::abs(wish.z()) > vehicle.max_climb) wish *= vehicle.max_climb / std::abs(wish.z());
-  const Vec3 acceleration =
-      limited((wish - flight.velocity) / kResponse, settings_.acceleration_share * vehicle.max_acceleration);
-  const Vec3 velocity = flight.velocity + acceleration * settings_.step;
-  flight.position += 0.5 * (flight.velocity + velocity) * settings_.step;
-  flight.velocity = velocity;
+  Vec3 bounded = limited(wish, vehicle.max_speed);
+  if (std::abs(bounded.z()) > vehicle.max_climb) bounded *= vehicle.max_climb / std::abs(bounded.z());
+  const Vec3 change = limited(bounded - flight.velocity, settings_.acceleration_share * vehicle.max_acceleration * settings_.step);
+  flight.position += (flight.velocity + 0.5 * change) * settings_.step;
+  flight.velocity += change;
+}
+
+template <typename Visit>
+void PathProblem::fly(std::span<const double> x, const Visit& visit) const {
+  Flight flight{request_.position, request_.velocity};
+  Vec3 begin = offset(x, 0);
+  for (int leg = 0; leg < settings_.waypoints; ++leg) {
+    const Vec3 end = offset(x, leg + 1);
+    const Vec3 drift = (end - begin) / (steps_per_leg_ * settings_.step);
+    for (int i = 0; i < steps_per_leg_; ++i) {
+      const int step = leg * steps_per_leg_ + i;
+      const Vec3 wished = undisturbed(step) + begin + i * settings_.step * drift;
+      const double speed = (undisturbed_[index(step + 1)] - undisturbed_[index(step)]) / settings_.step;
+      advance(flight, speed * frame_.axis + drift + (wished - flight.position) / kCatchUp);
+      visit(step + 1, flight);
+    }
+    begin = end;
+  }
 }
 
 void PathProblem::evaluate(std::span<const double> x, std::span<Cost> costs) const {
   std::array<Vec3, kMaxSteps + 1> positions;
   const auto d = index(dimension());
   for (std::size_t i = 0; i < costs.size(); ++i) {
-    const auto solution = x.subspan(i * d, d);
-    Flight flight{request_.position, request_.velocity};
-    positions[0] = flight.position;
-    for (int step = 0; step < steps_; ++step) {
-      const int leg = step / steps_per_leg_;
-      const double time_left = ((leg + 1) * steps_per_leg_ - step) * settings_.step;
-      advance(flight, waypoint(solution, leg), time_left, request_.vehicle.max_speed);
-      positions[index(step + 1)] = flight.position;
-    }
+    positions[0] = request_.position;
+    fly(x.subspan(i * d, d), [&](int step, const Flight& flight) { positions[index(step)] = flight.position; });
     costs[i] = cost_of_positions({positions.data(), index(steps_ + 1)});
   }
 }
@@ -224,17 +237,14 @@ void PathProblem::add_obstacles(int step, const Vec3& from, const Vec3& to, Cost
 TimedPath PathProblem::motion(std::span<const double> x) const {
   TimedPath path;
   path.reserve(index(steps_ + 2));
-  Flight flight{request_.position, request_.velocity};
-  path.push_back({0.0, flight.position, flight.velocity, Vec3::Zero()});
-  for (int step = 0; step < steps_; ++step) {
-    const int leg = step / steps_per_leg_;
-    const double time_left = ((leg + 1) * steps_per_leg_ - step) * settings_.step;
-    const Vec3 before = flight.velocity;
-    advance(flight, waypoint(x, leg), time_left, request_.vehicle.max_speed);
-    path.back().acceleration = (flight.velocity - before) / settings_.step;
-    path.push_back({(step + 1) * settings_.step, flight.position, flight.velocity, Vec3::Zero()});
-  }
-  fly_to_target(path, flight);
+  path.push_back({0.0, request_.position, request_.velocity, Vec3::Zero()});
+  Flight last{request_.position, request_.velocity};
+  fly(x, [&](int step, const Flight& flight) {
+    path.back().acceleration = (flight.velocity - last.velocity) / settings_.step;
+    path.push_back({step * settings_.step, flight.position, flight.velocity, Vec3::Zero()});
+    last = flight;
+  });
+  fly_to_target(path, last);
   return path;
 }
 
@@ -242,10 +252,11 @@ TimedPath PathProblem::motion(std::span<const double> x) const {
 void PathProblem::fly_to_target(TimedPath& path, Flight flight) const {
   const auto away = [&](const TimedPoint& point) { return (point.position - request_.target).norm() > kArrival; };
   for (double tail = 0.0; away(path.back()) && tail < kLongestTail; tail += settings_.step) {
-    const double distance = (request_.target - flight.position).norm();
-    const double speed = std::min(request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance));
+    const Vec3 way = request_.target - flight.position;
+    const double distance = way.norm();
+    const double speed = std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
     const Vec3 before = flight.velocity;
-    advance(flight, request_.target, kShortestAim, speed);
+    advance(flight, way * (speed / distance));
     path.back().acceleration = (flight.velocity - before) / settings_.step;
     path.push_back({path.back().t + settings_.step, flight.position, flight.velocity, Vec3::Zero()});
   }
@@ -265,8 +276,9 @@ Cost PathProblem::cost_of(const TimedPath& path) const {
 void PathProblem::imitate(const TimedPath& path, std::span<double> x) const {
   for (int k = 0; k < settings_.waypoints; ++k) {
     const std::size_t i = index(k);
-    const Vec3 q = frame_.from_enu(sample(path, (k + 1) * steps_per_leg_ * settings_.step).position);
-    const double along = q.x() - undisturbed_[i];
+    const int step = (k + 1) * steps_per_leg_;
+    const Vec3 q = frame_.from_enu(sample(path, step * settings_.step).position);
+    const double along = q.x() - undisturbed_[index(step)];
     x[3 * i] = std::clamp(along / (along > 0.0 ? ahead_[i] : behind_[i]), -1.0, 1.0);
     x[3 * i + 1] = std::clamp(q.y() / aside_[i], -1.0, 1.0);
     x[3 * i + 2] = std::clamp(q.z() / aside_[i], -1.0, 1.0);

@@ -26,9 +26,11 @@ struct PathRequest {
   double acceleration_trust = kInfinity;  ///< as in predict_position
 };
 
-/// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1]: along the path frame's axis relative
-/// to undisturbed flight (falling behind, waiting below 0, hurrying above), left, and up. The vehicle pursues the waypoints
-/// with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every instant.
+/// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where undisturbed
+/// flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's axis (behind, or
+/// waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The vehicle follows with
+/// bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every instant; with all
+/// of them 0 it is undisturbed flight.
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
 /// undisturbed flight, as length at cruise speed. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how
@@ -71,8 +73,12 @@ class PathProblem final : public Problem {
   struct Flight {
     Vec3 position, velocity;
   };
-  [[nodiscard]] Vec3 waypoint(std::span<const double> x, int k) const;
-  void advance(Flight& flight, const Vec3& goal, double time_left, double speed_limit) const;
+  [[nodiscard]] Vec3 undisturbed(int step) const { return frame_.origin + undisturbed_[static_cast<std::size_t>(step)] * frame_.axis; }
+  [[nodiscard]] Vec3 offset(std::span<const double> x, int k) const;
+  /// Calls visit(step, flight) with the motion's state at the end of each step of the horizon.
+  template <typename Visit>
+  void fly(std::span<const double> x, const Visit& visit) const;
+  void advance(Flight& flight, const Vec3& wish) const;
   void undisturbed_flight();
   void predict_obstacles();
   void fly_to_target(TimedPath& path, Flight flight) const;
@@ -85,7 +91,7 @@ class PathProblem final : public Problem {
   int steps_per_leg_;
   int steps_;
   std::vector<double> lower_, upper_;
-  std::vector<double> undisturbed_;             // distance along the axis at each waypoint's time
+  std::vector<double> undisturbed_;             // distance along the axis after each step
   std::vector<double> ahead_, behind_, aside_;  // how far a variable of ±1 reaches at each waypoint, m
   double undisturbed_time_ = 0.0;               // to the target
   std::size_t kept_ = 0;

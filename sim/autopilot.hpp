@@ -158,32 +158,30 @@ class Autopilot {
   VehicleModel model_;
   std::int64_t steps_ = 0;
 
-  bool armed_ = false;
-  bool crashed_ = false;
-  double armed_at_ = 0.0;
-  FlightMode intended_mode_ = FlightMode::kHold;
-  FlightMode mode_after_disarm_ = FlightMode::kHold;  ///< the last one that does not forbid arming
-  std::optional<FlightMode> failsafe_;
-  FlightMode guided_mode_ = FlightMode::kHold;  ///< the one that the guidance state below belongs to
-
   Setpoint offboard_;
   std::optional<double> last_offboard_;
-
-  Phase phase_ = Phase::kLanded;
-  double ramp_started_ = 0.0;
-  bool landed_ = true;
-  bool has_flown_ = false;  ///< since it was armed
-  double landed_at_ = 0.0;
-  std::optional<double> settled_since_;  ///< on the ground and told to descend
-
+  Setpoint active_setpoint_;
   Vec3 home_ = Vec3::Zero();
   Vec3 hold_position_ = Vec3::Zero();
+  double takeoff_height_ = 0.0;
+  double armed_at_ = 0.0;
+  double ramp_started_ = 0.0;
+  double landed_at_ = 0.0;
+  std::optional<double> settled_since_;  ///< on the ground and told to descend
+  std::vector<StatusText> texts_;
+
+  FlightMode intended_mode_ = FlightMode::kHold;
+  FlightMode mode_after_disarm_ = FlightMode::kHold;  ///< the last one that does not forbid arming
+  FlightMode guided_mode_ = FlightMode::kHold;        ///< the one that hold_position_ and return_... belong to
+  std::optional<FlightMode> failsafe_;
+  Phase phase_ = Phase::kLanded;
+  bool armed_ = false;
+  bool crashed_ = false;
+  bool landed_ = true;
+  bool has_flown_ = false;  ///< since it was armed
   bool return_climbed_ = false;
   bool return_arrived_ = false;
-  double takeoff_height_ = 0.0;
-  Setpoint active_setpoint_;
   bool ready_reported_ = false;
-  std::vector<StatusText> texts_;
 };
 
 }  // namespace jink::sim

@@ -28,6 +28,8 @@ bridge::FlightMode bridge_mode(FlightMode mode) {
   return bridge::FlightMode::kOther;
 }
 
+constexpr double kGroundBelow = 1000.0;  // m
+
 /// The autopilot without MAVLink between: telemetry is now, commands act at once.
 class VirtualLink final : public bridge::VehicleLink {
  public:
@@ -106,7 +108,7 @@ class VirtualTracks final : public bridge::TrackSource {
  private:
   SensingPipeline pipeline_;
   double now_ = 0.0;
-  bridge::TrackSourceStatus status_{.writers = 1};
+  bridge::TrackSourceStatus status_{1, 0, 0, 0, {}};
 };
 
 /// Judges the true motion from step to step.
@@ -172,7 +174,8 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
   vehicle.limits = scenario.vehicle;
   vehicle.position = scenario.start;
   vehicle.airborne = true;
-  vehicle.ground_height = std::min({0.0, scenario.start.z(), scenario.target.z()});
+  // The flight begins in the air wherever the start is, so the ground is out of reach; the world's floor is judged apart.
+  vehicle.ground_height = std::min({0.0, scenario.start.z(), scenario.target.z()}) - kGroundBelow;
   vehicle.ready_delay = 0.0;
   vehicle.cascade.max_descent = scenario.vehicle.max_climb;
   Autopilot autopilot(vehicle);

@@ -44,9 +44,9 @@ double lag_fraction(double time_constant) {
 
 Eigen::Quaterniond attitude_along(const Vec3& thrust, double yaw) {
   const Vec3 up = thrust.normalized();
-  const Vec3 left = up.cross(Vec3(std::cos(yaw), std::sin(yaw), 0.0)).normalized();
+  const Vec3 ahead = Vec3(-std::sin(yaw), std::cos(yaw), 0.0).cross(up).normalized();
   Eigen::Matrix3d axes;
-  axes << left.cross(up), left, up;
+  axes << ahead, up.cross(ahead), up;
   return Eigen::Quaterniond(axes);
 }
 
@@ -126,7 +126,7 @@ Vec3 VehicleModel::control(const Setpoint& setpoint) {
     wanted[axis] +=
         gains.velocity_gain * error[axis] + integral_[axis] - gains.derivative_gain * motion_.acceleration[axis];
   }
-  const Vec3 given = attainable(wanted);
+  Vec3 given = attainable(wanted);
   for (int axis = 0; axis < 3; ++axis) {
     const CascadeAxis& gains = axis == 2 ? cascade_.vertical : cascade_.horizontal;
     // Anti-windup by tracking, as PX4's: what saturation takes away is taken from the integral's input.

@@ -302,9 +302,6 @@ TEST_F(AirborneEndpointTest, ReportsTheMotionInNedAndDegrees) {
     setpoint(kVelocityOnly, {}, {1.0, 2.0, -0.5});
     run(0.02);
   }
-  // The states of one instant: everything once more, on request.
-  heard.clear();
-  for (const float id : {30.0F, 31.0F, 32.0F, 33.0F, 105.0F, 331.0F}) command(MAV_CMD_REQUEST_MESSAGE, {id}), run(0);
   const Motion& motion = autopilot.true_motion();
   ASSERT_GT(motion.velocity.y(), 0.4);  // 1 m/s to the north is ENU's y
   ASSERT_GT(motion.velocity.x(), 0.8);
@@ -402,7 +399,7 @@ TEST_F(MavlinkEndpointTest, AnswersTheOtherCommandsAsPx4) {
   EXPECT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {11000}), (Results{2}));
   EXPECT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {kNan}), (Results{2}));
   EXPECT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {49}), (Results{0}));
-  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), 2U);  // the one at the start and this one
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), 1U);
   EXPECT_EQ(command(MAV_CMD_DO_SET_HOME, {1}), (Results{0}));
   EXPECT_EQ(command(MAV_CMD_NAV_LAND), (Results{0}));
   EXPECT_EQ(command(MAV_CMD_NAV_TAKEOFF, {0, 0, 0, kNan, kNan, kNan, kNan}), (Results{0}));
@@ -655,7 +652,7 @@ TEST_F(MavlinkEndpointTest, SurvivesValidFramesWithRandomContents) {
   std::uint64_t sent = 0;
   for (int i = 0; i < 6000; ++i) {
     mavlink_message_t message{};
-    message.msgid = ids[generator() % ids.size()];
+    message.msgid = ids[generator() % ids.size()] & 0xFFFFFFU;
     const auto* entry = mavlink_get_msg_entry(message.msgid);
     for (std::uint8_t b = 0; b < entry->max_msg_len; ++b) {
       _MAV_PAYLOAD_NON_CONST(&message)[b] = static_cast<char>(generator());

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/report_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+namespace jink::tools {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kFinest = 0.05;            // s, between samples: what the eye can follow
+constexpr double kMostSamples = 3000.0;     // of one series; a longer flight is shown coarser
+constexpr std::size_t kMostPathPoints = 41; // of one plan
+constexpr double kOldestState = 0.2;        // s, age up to which an estimate is compared with tracks
+constexpr double kSlack = 1e-6;             // s, for times that are sums of steps
+
+Json rounded(double x, double digits) { return std::round(x * digits) / digits; }
+Json millimetres(double x) { return rounded(x, 1e3); }
+Json seconds(double t) { return rounded(t, 1e4); }
+Json centi(double x) { return rounded(x, 1e2); }
+
+double norm(const Triple& v) { return std::hypot(v[0], v[1], v[2]); }
+double distance(const Triple& a, const Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+void append(Json& list, const Triple& v) {
+  for (const double x : v) list.push_back(millimetres(x));
+}
+
+double interval_of(const FlightData& flight) { return std::max(kFinest, (flight.last - flight.first) / kMostSamples); }
+
+template <typename Sample>
+std::vector<std::size_t> thin_samples(const std::vector<Sample>& samples, double interval) {
+  std::vector<double> t;
+  t.reserve(samples.size());
+  for (const Sample& sample : samples) t.push_back(sample.t);
+  return thin(t, interval);
+}
+
+Json motion_json(const std::vector<MotionSample>& samples, double interval) {
+  Json t = Json::array(), p = Json::array(), speed = Json::array();
+  for (const std::size_t i : thin_samples(samples, interval)) {
+    t.push_back(seconds(samples[i].t));
+    append(p, samples[i].position);
+    speed.push_back(millimetres(norm(samples[i].velocity)));
+  }
+  return {{"t", std::move(t)}, {"p", std::move(p)}, {"speed", std::move(speed)}};
+}
+
+/// Per frame a flat list of id, x, y, z, radius, and with velocities vx, vy, vz.
+Json frames_json(const std::vector<BodyFrame>& frames, double interval, bool velocities) {
+  if (frames.empty()) return nullptr;
+  Json t = Json::array(), lists = Json::array();
+  for (const std::size_t i : thin_samples(frames, interval)) {
+    Json list = Json::array();
+    for (const Body& body : frames[i].bodies) {
+      list.push_back(body.id);
+      append(list, body.position);
+      list.push_back(millimetres(body.radius));
+      if (velocities) {
+        for (const double x : body.velocity) list.push_back(centi(x));
+      }
+    }
+    t.push_back(seconds(frames[i].t));
+    lists.push_back(std::move(list));
+  }
+  return {{"t", std::move(t)}, {"frames", std::move(lists)}, {"stride", velocities ? 8 : 5}};
+}
+
+Json plans_json(const std::vector<PlanRecord>& plans) {
+  Json list = Json::array();
+  for (const PlanRecord& plan : plans) {
+    Json path = Json::array();
+    const std::size_t step = std::max<std::size_t>(1, (plan.path.size() + kMostPathPoints - 2) / (kMostPathPoints - 1));
+    for (std::size_t i = 0; i < plan.path.size(); ++i) {
+      if (i % step != 0 && i + 1 != plan.path.size()) continue;
+      const auto& [t, x, y, z] = plan.path[i];
+      path.push_back(millimetres(t));
+      append(path, {x, y, z});
+    }
+    list.push_back({{"t", seconds(plan.t)}, {"ms", centi(plan.ms)}, {"status", plan.status}, {"kept", plan.kept},
+                    {"missed", plan.missed}, {"path", std::move(path)}});
+  }
+  return list;
+}
+
+std::optional<double> vehicle_radius(const FlightData& flight) {
+  const auto vehicle = flight.header.find("vehicle");
+  if (vehicle == flight.header.end() || !vehicle->is_object()) return std::nullopt;
+  const auto radius = vehicle->find("radius");
+  if (radius == vehicle->end() || !radius->is_number()) return std::nullopt;
+  return radius->get<double>();
+}
+
+/// Thinned to the least clearance of each interval: what matters must not fall between two samples.
+Json clearance_json(const std::vector<ClearanceSample>& samples, double interval, std::string_view from) {
+  if (samples.empty()) return nullptr;
+  Json t = Json::array(), d = Json::array();
+  const ClearanceSample* least_of_all = &samples.front();
+  for (std::size_t i = 0; i < samples.size();) {
+    const double begin = samples[i].t;
+    const ClearanceSample* least = &samples[i];
+    for (; i < samples.size() && samples[i].t < begin + interval - kSlack; ++i) {
+      if (samples[i].distance < least->distance) least = &samples[i];
+    }
+    if (least->distance < least_of_all->distance) least_of_all = least;
+    t.push_back(seconds(least->t));
+    d.push_back(millimetres(least->distance));
+  }
+  const Json lowest{{"t", seconds(least_of_all->t)}, {"d", millimetres(least_of_all->distance)}};
+  return {{"from", from}, {"t", std::move(t)}, {"d", std::move(d)}, {"min", lowest}};
+}
+
+std::optional<double> nearest(const Triple& vehicle, double radius, const BodyFrame& frame, double ahead) {
+  std::optional<double> least;
+  for (const Body& body : frame.bodies) {
+    Triple there = body.position;
+    for (std::size_t k = 0; k < 3; ++k) there[k] += ahead * body.velocity[k];
+    const double free = distance(vehicle, there) - body.radius - radius;
+    if (!least || free < *least) least = free;
+  }
+  return least;
+}
+
+/// The outcome as the log's own events tell it: `replay` names the outcome, `fly` ends with "phase" "done: OUTCOME, ...".
+Json outcome_of(const FlightData& flight) {
+  static constexpr std::string_view kOutcomes[] = {"reached",    "collision",     "timeout",
+                                                   "left_world", "start_blocked", "aborted"};
+  static constexpr std::string_view kDone = "done: ";
+  for (auto event = flight.events.rbegin(); event != flight.events.rend(); ++event) {
+    for (const std::string_view outcome : kOutcomes) {
+      if (event->name == outcome) return {{"outcome", outcome}, {"reason", event->detail}};
+      if (event->name != "phase" || !event->detail.starts_with(kDone)) continue;
+      const std::string rest = event->detail.substr(kDone.size());
+      if (!rest.starts_with(outcome)) continue;
+      const std::size_t comma = rest.find(", ");
+      return {{"outcome", outcome}, {"reason", comma == std::string::npos ? "" : rest.substr(comma + 2)}};
+    }
+  }
+  return Json::object();
+}
+
+/// The summary's figures as far as the log alone holds them, over the whole log.
+Json derived_json(const FlightData& flight, const std::vector<MotionSample>& vehicle) {
+  Json derived = outcome_of(flight);
+  if (!vehicle.empty()) {
+    double length = 0.0, fastest = 0.0;
+    for (std::size_t i = 0; i < vehicle.size(); ++i) {
+      if (i > 0) length += distance(vehicle[i - 1].position, vehicle[i].position);
+      fastest = std::max(fastest, norm(vehicle[i].velocity));
+    }
+    derived["path_length"] = length;
+    derived["max_speed"] = fastest;
+  }
+  derived["log_duration_s"] = flight.last - flight.first;
+  if (flight.plans.empty()) return derived;
+  std::vector<double> ms;
+  for (const PlanRecord& plan : flight.plans) ms.push_back(plan.ms);
+  std::sort(ms.begin(), ms.end());
+  const auto rank = [&](double share) {  // nearest rank, as in the flight summary
+    const double place = std::ceil(share * static_cast<double>(ms.size()));
+    return ms[static_cast<std::size_t>(std::max(0.0, place - 1.0))];
+  };
+  derived["plans"] = ms.size();
+  derived["deadline_misses"] = std::count_if(flight.plans.begin(), flight.plans.end(), [](const PlanRecord& p) { return p.missed; });
+  derived["plan_ms"] = {{"p50", rank(0.5)}, {"p99", rank(0.99)}, {"max", ms.back()}};
+  return derived;
+}
+
+}  // namespace
+
+std::vector<std::size_t> thin(std::span<const double> t, double interval) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (kept.empty() || t[i] - t[kept.back()] >= interval - kSlack) kept.push_back(i);
+  }
+  if (!t.empty() && kept.back() != t.size() - 1) kept.push_back(t.size() - 1);
+  return kept;
+}
+
+std::vector<ClearanceSample> true_clearance(const FlightData& flight) {
+  const double radius = vehicle_radius(flight).value_or(0.0);
+  std::vector<ClearanceSample> result;
+  auto frame = flight.obstacles.begin();
+  for (const MotionSample& sample : flight.truth) {
+    while (frame != flight.obstacles.end() && frame->t < sample.t) ++frame;
+    if (frame == flight.obstacles.end()) break;
+    if (frame->t != sample.t) continue;
+    if (const auto free = nearest(sample.position, radius, *frame, 0.0)) result.push_back({sample.t, *free});
+  }
+  return result;
+}
+
+std::vector<ClearanceSample> tracked_clearance(const FlightData& flight) {
+  const double radius = vehicle_radius(flight).value_or(0.0);
+  std::vector<ClearanceSample> result;
+  auto state = flight.states.begin();
+  for (const BodyFrame& frame : flight.tracks) {
+    while (state != flight.states.end() && state->t <= frame.t) ++state;
+    if (state == flight.states.begin()) continue;
+    const MotionSample& newest = *std::prev(state);
+    if (frame.t - newest.t > kOldestState) continue;
+    if (const auto free = nearest(newest.position, radius, frame, newest.t - frame.t)) result.push_back({newest.t, *free});
+  }
+  return result;
+}
+
+Json report_data(const FlightData& flight, const Json* summary) {
+  const double interval = interval_of(flight);
+  const bool truth = !flight.truth.empty();
+  const std::vector<MotionSample>& vehicle = truth ? flight.truth : flight.states;
+  const std::vector<ClearanceSample> exact = true_clearance(flight);
+  Json events = Json::array();
+  for (const EventRecord& event : flight.events) events.push_back({seconds(event.t), event.name, event.detail});
+  Json data;
+  data["header"] = flight.header;
+  data["log"] = {{"lines", flight.lines}, {"cut_off", flight.cut_off}, {"not_finite", flight.not_finite},
+                 {"unknown", flight.unknown}, {"interval", interval}};
+  data["t"] = {seconds(flight.first), seconds(flight.last)};
+  data["vehicle"] = motion_json(vehicle, interval);
+  data["vehicle"]["from"] = truth ? "truth" : "state";
+  const std::optional<double> radius = vehicle_radius(flight);
+  data["vehicle"]["radius"] = radius ? Json(*radius) : Json();
+  data["setpoints"] = motion_json(flight.setpoints, interval);
+  data["obstacles"] = frames_json(flight.obstacles, interval, false);
+  data["tracks"] = frames_json(flight.tracks, interval, true);
+  data["plans"] = plans_json(flight.plans);
+  data["events"] = std::move(events);
+  data["clearance"] = exact.empty() ? clearance_json(tracked_clearance(flight), interval, "tracks")
+                                    : clearance_json(exact, interval, "true");
+  data["summary"] = summary != nullptr ? *summary : Json();
+  data["derived"] = derived_json(flight, vehicle);
+  return data;
+}
+
+}  // namespace jink::tools
