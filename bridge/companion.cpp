@@ -44,7 +44,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       parts_(std::move(parts)),
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
-      stream_({settings.companion.setpoint_lead, settings.companion.drag, settings.horizon.braking}) {}
+      stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag, settings.horizon.braking}) {}
 
 void Companion::event(double now, std::string_view name, const std::string& detail) {
   for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
@@ -246,6 +246,7 @@ void Companion::measure(double now) {
   if (last_position_) summary_.path_length += (state_.position - *last_position_).norm();
   last_position_ = state_.position;
   if (stream_.active()) {
+    stream_.learn(state_.position_stamp, state_.position, std::max(0.0, now - last_step_));
     const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
     summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/setpoint_stream.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -10,6 +11,9 @@ namespace {
 
 constexpr double kBrakeStep = 0.05;  // s, between points of a stop
 constexpr double kAtRest = 0.02;     // m/s
+constexpr double kLearningSpeed = 1.0;  // m/s, below which a lag says little about drag
+constexpr double kLearningRate = 0.4;   // 1/s² of drag for each metre of lag
+constexpr double kMostDrag = 2.0;       // 1/s
 
 }  // namespace
 
@@ -52,6 +56,15 @@ void SetpointStream::brake(double now, const std::optional<planner::TimedPoint>&
   is_braking_ = true;
 }
 
+void SetpointStream::learn(double t, const Vec3& position, double dt) {
+  if (!active() || !is_plan_) return;
+  const planner::TimedPoint point = reference(t);
+  const double speed = point.velocity.norm();
+  if (speed < kLearningSpeed) return;
+  const double lag = (point.position - position).dot(point.velocity) / speed;
+  drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
+}
+
 planner::TimedPoint SetpointStream::reference(double t) const {
   assert(active());
   return planner::sample(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
@@ -59,7 +72,8 @@ planner::TimedPoint SetpointStream::reference(double t) const {
 
 Setpoint SetpointStream::setpoint(double now, double yaw) const {
   const planner::TimedPoint point = reference(now + settings_.lead);
-  return {point.position, point.velocity, point.acceleration + settings_.drag * point.velocity, yaw};
+  const planner::TimedPoint later = reference(now + settings_.acceleration_lead);
+  return {point.position, point.velocity, later.acceleration + drag_ * later.velocity, yaw};
 }
 
 planner::TimedPath SetpointStream::plan(double t) const {

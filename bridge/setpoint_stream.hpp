@@ -14,11 +14,12 @@ namespace jink::bridge {
 class SetpointStream {
  public:
   struct Settings {
-    double lead = 0.0;     ///< s: setpoints are the reference that much later, which makes up for the autopilot's lag
-    double drag = 0.0;     ///< 1/s: the acceleration of a setpoint makes up for this deceleration per speed
-    double braking = 2.0;  ///< m/s², deceleration of a brake
+    double lead = 0.0;               ///< s: position and velocity are the reference's that much later (transport)
+    double acceleration_lead = 0.0;  ///< s: the acceleration is (attitude loop and rotors too)
+    double drag = 0.0;               ///< 1/s: deceleration per speed that the acceleration makes up for, to begin with
+    double braking = 2.0;            ///< m/s², deceleration of a brake
   };
-  explicit SetpointStream(const Settings& settings) : settings_(settings) {}
+  explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
@@ -33,6 +34,12 @@ class SetpointStream {
   /// The setpoint to send at `now`, heading `yaw`.
   [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
 
+  /// Learns the drag from how far the vehicle, measured at `position` at time t, lags behind the reference or runs ahead of
+  /// it; `dt` since the last call.
+  void learn(double t, const Vec3& position, double dt);
+  /// The drag that setpoints make up for now, 1/s.
+  [[nodiscard]] double drag() const { return drag_; }
+
   [[nodiscard]] bool active() const { return !current_.empty(); }
   [[nodiscard]] bool braking() const { return is_braking_; }
   /// The path followed at time t, for the planner's warm start; empty while holding or braking.
@@ -40,6 +47,7 @@ class SetpointStream {
 
  private:
   Settings settings_;
+  double drag_;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::TimedPath current_;

@@ -25,3 +25,5 @@ endif()
 
 add_library(mavlink_headers INTERFACE)
 target_include_directories(mavlink_headers SYSTEM INTERFACE ${JINK_MAVLINK_DIR})
+# The message structure is packed: fields are read by memcpy, not through pointers that may be misaligned.
+target_compile_definitions(mavlink_headers INTERFACE MAVLINK_ALIGNED_FIELDS=0)

@@ -88,6 +88,7 @@ constexpr Field<CompanionSettings> kCompanion[] = {
     {"replan_rate_hz", &CompanionSettings::replan_rate_hz, above(0, 1000)},
     {"planner_latency_ms", &CompanionSettings::planner_latency_ms, closed(0, 10000)},
     {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},
+    {"acceleration_lead", &CompanionSettings::acceleration_lead, closed(0, 10)},
     {"drag", &CompanionSettings::drag, closed(0, 5)},
     {"stale_state", &CompanionSettings::stale_state, above(0, 60)},
     {"stale_plan", &CompanionSettings::stale_plan, above(0, 60)},

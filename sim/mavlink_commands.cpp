@@ -9,6 +9,8 @@ namespace {
 
 constexpr float kForce = 21196.0F;  ///< param2 of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr double kMicroseconds = 1e6;
+constexpr float kMaxIntervalUs = 2e9F;    ///< what MESSAGE_INTERVAL can tell
+constexpr double kMaxAltitude = 10000.0;  ///< m, of anything that a command may name
 constexpr double kDegreesE7 = 1e7;
 constexpr std::int32_t kNoCoordinate = 0x7FFFFFFF;  ///< "not given" in COMMAND_INT
 
@@ -112,6 +114,7 @@ Result MavlinkEndpoint::Impl::arm_or_disarm(const Command& command) {
 
 Result MavlinkEndpoint::Impl::take_off(const Command& command) {
   if (!std::isfinite(command.param7)) return autopilot_.takeoff();
+  if (std::abs(static_cast<double>(command.param7)) > kMaxAltitude) return Result::kDenied;
   return autopilot_.takeoff(static_cast<double>(command.param7) - frame_.origin().altitude_m);
 }
 
@@ -121,6 +124,7 @@ Result MavlinkEndpoint::Impl::reposition(const Command& command) {
   if (has_place && (std::abs(command.latitude_deg) > 90.0 || std::abs(command.longitude_deg) > 180.0)) {
     return Result::kDenied;
   }
+  if (std::abs(static_cast<double>(command.param7)) > kMaxAltitude) return Result::kDenied;
   if (!has_place && !std::isfinite(command.param7)) return autopilot_.hold();
   Geodetic target = global_position();
   if (has_place) {
@@ -135,8 +139,9 @@ Result MavlinkEndpoint::Impl::reposition(const Command& command) {
 
 Result MavlinkEndpoint::Impl::set_home(const Command& command) {
   if (command.param1 == 1.0F) return autopilot_.set_home(autopilot_.estimated_motion().position);
-  if (!std::isfinite(command.latitude_deg) || !std::isfinite(command.longitude_deg) || !std::isfinite(command.param7) ||
-      std::abs(command.latitude_deg) > 90.0 || std::abs(command.longitude_deg) > 180.0) {
+  // Written so that NaN is refused too.
+  if (!(std::abs(command.latitude_deg) <= 90.0) || !(std::abs(command.longitude_deg) <= 180.0) ||
+      !(std::abs(static_cast<double>(command.param7)) <= kMaxAltitude)) {
     return Result::kDenied;
   }
   return autopilot_.set_home(
@@ -145,7 +150,8 @@ Result MavlinkEndpoint::Impl::set_home(const Command& command) {
 
 Result MavlinkEndpoint::Impl::set_message_interval(MavlinkLink& link, const Command& command) {
   const auto index = find_kind(whole(command.param1));
-  if (!index || message_kinds()[*index].id == MAVLINK_MSG_ID_HEARTBEAT || !std::isfinite(command.param2)) {
+  const bool usable = std::abs(command.param2) <= kMaxIntervalUs;  // NaN is not
+  if (!index || message_kinds()[*index].id == MAVLINK_MSG_ID_HEARTBEAT || !usable) {
     return Result::kFailed;
   }
   Stream& stream = link.streams[*index];

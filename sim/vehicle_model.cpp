@@ -93,9 +93,9 @@ Vec3 VehicleModel::velocity_command(const Setpoint& setpoint) const {
       command[axis] += gains.position_gain * (setpoint.position[axis] - motion_.position[axis]);
     }
   }
-  const double speed = std::min(limits_.max_speed, bounds_.speed);
-  const double climb = std::min({limits_.max_climb, bounds_.climb, speed});
-  const double descent = std::min({limits_.max_climb, cascade_.max_descent, bounds_.descent, speed});
+  const double speed = std::clamp(bounds_.speed, 0.0, limits_.max_speed);
+  const double climb = std::clamp(bounds_.climb, 0.0, std::min(limits_.max_climb, speed));
+  const double descent = std::clamp(bounds_.descent, 0.0, std::min({limits_.max_climb, cascade_.max_descent, speed}));
   command.z() = std::clamp(command.z(), -descent, climb);
   return clamp_horizontal(command, std::sqrt(std::max(0.0, speed * speed - command.z() * command.z())));
 }

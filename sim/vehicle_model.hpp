@@ -69,7 +69,8 @@ struct Cascade {
   double max_yaw_rate = 139.0 * kDegree;
 };
 
-/// Bounds on what the cascade asks for, below what the vehicle can do: parameters and flight phases set them.
+/// Bounds on what the cascade asks for, below what the vehicle can do: parameters and flight phases set them. Less
+/// than zero counts as zero.
 struct SpeedBounds {
   double speed = planner::kInfinity;
   double climb = planner::kInfinity;

@@ -422,6 +422,18 @@ TEST(Autopilot, SpeedParametersBoundTheFlight) {
   EXPECT_LT(flight.autopilot.true_motion().velocity.x(), 1.6);
 }
 
+TEST(Autopilot, NegativeSpeedParametersStopItAndBreakNothing) {
+  Flight flight(airborne_options());
+  for (const char* name : {"MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN"}) {
+    ASSERT_TRUE(flight.autopilot.parameters().set(name, -3.0F));
+  }
+  const Setpoint far = position_setpoint({50, 0, 9});
+  flight.run(0.1, &far);
+  ASSERT_EQ(flight.autopilot.set_mode(6), Result::kAccepted);
+  flight.run(5.0, &far);
+  EXPECT_LT((flight.autopilot.true_motion().position - Vec3(0, 0, 3)).norm(), 0.05);
+}
+
 TEST(Autopilot, TheSameCommandsGiveTheSameBits) {
   const auto fly = [] {
     Flight flight(airborne_options());

@@ -401,6 +401,8 @@ TEST_F(MavlinkEndpointTest, AnswersTheOtherCommandsAsPx4) {
   EXPECT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {49}), (Results{0}));
   EXPECT_EQ(count(heard, MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), 1U);
   EXPECT_EQ(command(MAV_CMD_DO_SET_HOME, {1}), (Results{0}));
+  EXPECT_EQ(command(MAV_CMD_DO_SET_HOME, {0, 0, 0, 0, 47, 8, 1e30F}), (Results{2}));
+  EXPECT_EQ(command(MAV_CMD_DO_SET_HOME, {0, 0, 0, 0, kNan, 8, 490}), (Results{2}));
   EXPECT_EQ(command(MAV_CMD_NAV_LAND), (Results{0}));
   EXPECT_EQ(command(MAV_CMD_NAV_TAKEOFF, {0, 0, 0, kNan, kNan, kNan, kNan}), (Results{0}));
   EXPECT_EQ(autopilot.mode(), FlightMode::kTakeoff);
@@ -456,6 +458,7 @@ TEST_F(MavlinkEndpointTest, MessageIntervalsCanBeChangedAskedForAndReset) {
   EXPECT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {11000, 20000}), (Results{4}));
   EXPECT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {0, 20000}), (Results{4}));  // the heartbeat's
   EXPECT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {30, kNan}), (Results{4}));
+  EXPECT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {30, 1e30F}), (Results{4}));
   heard.clear();
   heard_on_ground.clear();
   run(4.0);

@@ -3,10 +3,11 @@ const kColors = {
   vehicle: "#1761c7", flown: "#1761c7", whole: "#c5d8ef", plan: "#14915a", blocked: "#c8321f", obstacle: "#c98b3c",
   track: "#7a4fb5", setpoint: "#d0368a", near: "#c8321f"
 };
+const kShownGap = 2.0;      // m, up to which the gap to the nearest obstacle is drawn
 const kMostSegments = 700;  // of the whole path, for a smooth picture
 
 /** A sphere shaded from the upper left. Depth to its centre; the size is exact for a sphere in the view's middle. */
-function drawSphere(ctx, camera, p, radius, color, alarm) {
+function drawSphere(ctx, camera, p, radius, color, rim) {
   const s = camera.project(p);
   if (!s) return;
   const r = Math.max(1.5, camera.scale * radius / s[2]);
@@ -18,9 +19,9 @@ function drawSphere(ctx, camera, p, radius, color, alarm) {
   ctx.arc(s[0], s[1], r, 0, 2 * Math.PI);
   ctx.fillStyle = shade;
   ctx.fill();
-  if (!alarm) return;
+  if (!rim) return;
   ctx.lineWidth = 2;
-  ctx.strokeStyle = kColors.near;
+  ctx.strokeStyle = rim;
   ctx.stroke();
 }
 
@@ -83,9 +84,8 @@ class Scene {
   constructor(canvas) {
     this.canvas = canvas;
     this.ctx = canvas.getContext("2d");
-    const bounds = sceneBounds();
-    this.camera = new Camera(bounds);
-    this.ground = new Ground(bounds);
+    this.ground = new Ground(sceneBounds());
+    this.camera = new Camera(this.ground.bounds());
     this.follow = false;
     const n = flight.vehicle.t.length;
     const step = Math.max(1, Math.ceil(n / kMostSegments));
@@ -128,8 +128,8 @@ class Scene {
   collectPaths(moment) {
     for (let i = 1; i < this.whole.length; ++i) {
       const [a, b] = [this.whole[i - 1], this.whole[i]];
-      if (a.t >= moment.t) {
-        this.addSegment(a.p, b.p, kColors.whole, 2);
+      if (a.t >= moment.t) {  // under everything: it is where nothing is yet
+        line(this.ctx, this.camera, a.p, b.p, kColors.whole, 2);
         ++this.counts.whole;
       } else {
         this.addSegment(a.p, b.t <= moment.t || !moment.vehicle ? b.p : moment.vehicle.p, kColors.flown, 2.5);
@@ -150,7 +150,7 @@ class Scene {
     const {ctx, camera} = this;
     for (const body of moment.solid) {
       const near = moment.nearest && moment.nearest.body === body && moment.nearest.free < 0.3;
-      this.add(body.p, () => drawSphere(ctx, camera, body.p, body.r, kColors.obstacle, near));
+      this.add(body.p, () => drawSphere(ctx, camera, body.p, body.r, kColors.obstacle, near ? kColors.near : ""));
       ++this.counts.obstacles;
     }
     for (const track of moment.tracks) {
@@ -164,7 +164,7 @@ class Scene {
     }
     if (moment.setpoint) this.add(moment.setpoint.p, () => this.drawSetpoint(moment.setpoint.p));
     if (!moment.vehicle) return;
-    this.add(moment.vehicle.p, () => drawSphere(ctx, camera, moment.vehicle.p, flight.vehicle.radius || 0.05, kColors.vehicle, false));
+    this.add(moment.vehicle.p, () => drawSphere(ctx, camera, moment.vehicle.p, flight.vehicle.radius || 0.05, kColors.vehicle, "#ffffff"));
     ++this.counts.vehicle;
   }
 
@@ -185,11 +185,17 @@ class Scene {
   /** The gap to the nearest obstacle, drawn over everything: surface to surface. */
   drawNearest({vehicle, nearest}) {
     const apart = length(vehicle.p, nearest.body.p);
-    if (apart < 1e-6 || nearest.free > 3) return;
+    if (apart < 1e-6 || nearest.free > kShownGap) return;
     const a = mix(vehicle.p, nearest.body.p, clamp((flight.vehicle.radius || 0) / apart, 0, 1));
     const b = mix(nearest.body.p, vehicle.p, clamp(nearest.body.r / apart, 0, 1));
     const color = nearest.free < 0.3 ? kColors.near : "#45525f";
     line(this.ctx, this.camera, a, b, color, 1.2);
-    label(this.ctx, this.camera, mix(a, b, 0.5), `${nearest.free.toFixed(2)} m`, color, 0, -12);
+    const [from, to] = [this.camera.project(vehicle.p), this.camera.project(nearest.body.p)];
+    if (!from || !to) return;
+    // Beside the vehicle, away from the obstacle, so that it covers neither.
+    const away = Math.hypot(from[0] - to[0], from[1] - to[1]) || 1;
+    const reach = 14 + this.camera.scale * (flight.vehicle.radius || 0.05) / from[2];
+    const [dx, dy] = [0, 1].map((k) => (from[k] - to[k]) / away * reach);
+    label(this.ctx, this.camera, vehicle.p, `${nearest.free.toFixed(2)} m`, color, dx, dy, dx < -6 ? "right" : dx > 6 ? "left" : "center");
   }
 }

@@ -16,7 +16,9 @@ using Json = nlohmann::json;
 /// A record that holds null where a number belongs: the log's way to write one that is not finite.
 struct NotFinite {};
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
 
 const Json& member(const Json& record, const char* key) {
   const auto found = record.find(key);
@@ -32,7 +34,9 @@ double number(const Json& value, const char* key) {
   return x;
 }
 
-double number_of(const Json& record, const char* key) { return number(member(record, key), key); }
+double number_of(const Json& record, const char* key) {
+  return number(member(record, key), key);
+}
 
 template <std::size_t N>
 std::array<double, N> numbers(const Json& value, const char* key) {
@@ -44,7 +48,9 @@ std::array<double, N> numbers(const Json& value, const char* key) {
   return result;
 }
 
-Triple triple_of(const Json& record, const char* key) { return numbers<3>(member(record, key), key); }
+Triple triple_of(const Json& record, const char* key) {
+  return numbers<3>(member(record, key), key);
+}
 
 std::string text_of(const Json& record, const char* key) {
   const Json& value = member(record, key);
@@ -71,7 +77,8 @@ Body body_of(const Json& record, bool moving) {
 class Reader {
  public:
   void header(const Json& record) {
-    if (!record.is_object() || record.value("type", Json()) != "header") refuse("the first line is not a jink-log/1 header");
+    if (!record.is_object() || record.value("type", Json()) != "header")
+      refuse("the first line is not a jink-log/1 header");
     const Json format = record.value("format", Json());
     if (format != "jink-log/1") refuse("format: " + format.dump() + " is not \"jink-log/1\"");
     data.header = record;
@@ -116,7 +123,9 @@ class Reader {
       for (const Json& track : tracks) frame.bodies.push_back(body_of(track, true));
       data.tracks.push_back(std::move(frame));
     } else if (type == "plan") {
-      PlanRecord plan{t, number_of(record, "ms"), text_of(record, "status"), flag_of(record, "kept"), flag_of(record, "missed"), {}};
+      PlanRecord plan{
+          t, number_of(record, "ms"), text_of(record, "status"), flag_of(record, "kept"), flag_of(record, "missed"),
+          {}};
       const Json& path = member(record, "path");
       if (!path.is_array()) refuse("\"path\" is not a list");
       for (const Json& point : path) plan.path.push_back(numbers<4>(point, "path"));

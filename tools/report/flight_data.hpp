@@ -40,8 +40,8 @@ struct PlanRecord {
   double t = 0.0;
   double ms = 0.0;  ///< the planner's time
   std::string status;
-  bool kept = false;    ///< the previous plan was kept
-  bool missed = false;  ///< the deadline
+  bool kept = false;                        ///< the previous plan was kept
+  bool missed = false;                      ///< the deadline
   std::vector<std::array<double, 4>> path;  ///< t, x, y, z
 };
 
@@ -64,8 +64,8 @@ struct FlightData {
   std::size_t unknown = 0;     ///< records of another type
 };
 
-/// Reads `log`. Throws std::runtime_error "FILE: ..." where it cannot be opened and "FILE:LINE: ..." for content that is
-/// not jink-log/1; only the last line may be cut off. Linear in the log's size, which is held in memory.
+/// Reads `log`. Throws std::runtime_error "FILE: ..." where it cannot be opened and "FILE:LINE: ..." for content that
+/// is not jink-log/1; only the last line may be cut off. Linear in the log's size, which is held in memory.
 FlightData read_flight(const std::filesystem::path& log);
 
 }  // namespace jink::tools

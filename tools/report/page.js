@@ -122,7 +122,7 @@ function connectScene() {
     scene.camera.zoom(Math.exp(clamp(e.deltaY, -200, 200) * 0.0015));
     requestRedraw();
   }, {passive: false});
-  const views = {free: [-0.62, 0.5], top: [0, Math.PI / 2], south: [0, 0.02], west: [Math.PI / 2, 0.02]};
+  const views = {free: scene.camera.aside(), top: [0, Math.PI / 2], south: [0, 0.02], west: [Math.PI / 2, 0.02]};
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => {
       scene.camera.look(...views[button.dataset.view]);

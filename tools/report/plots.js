@@ -131,7 +131,7 @@ class Plots {
     ctx.strokeStyle = "#ffffffe0";
     let x = kPlot.left + 8;
     for (const [text, font, color] of [[s.title, "600 12px system-ui, sans-serif", "#1c2530"],
-                                       [`${s.unit}  ${empty ? "not in this log" : s.note}`, "11px system-ui, sans-serif", "#7b8794"]]) {
+                                       [`${s.unit}, ${empty ? "not in this log" : s.note}`, "11px system-ui, sans-serif", "#7b8794"]]) {
       ctx.font = font;
       ctx.strokeText(text, x, top + 11);
       ctx.fillStyle = color;

@@ -26,11 +26,20 @@ std::string embeddable(const std::string& json) {
   out.reserve(json.size() + json.size() / 64);
   for (const char c : json) {
     switch (c) {
-      case '<': out += "\\u003c"; break;
-      case '>': out += "\\u003e"; break;
-      case '&': out += "\\u0026"; break;
-      case '/': out += "\\/"; break;
-      default: out += c;
+      case '<':
+        out += "\\u003c";
+        break;
+      case '>':
+        out += "\\u003e";
+        break;
+      case '&':
+        out += "\\u0026";
+        break;
+      case '/':
+        out += "\\/";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -55,7 +64,8 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
 
 }  // namespace
 
-ReportResult write_report(const std::filesystem::path& log, const std::filesystem::path& html, const nlohmann::json* summary) {
+ReportResult write_report(const std::filesystem::path& log, const std::filesystem::path& html,
+                          const nlohmann::json* summary) {
   const FlightData flight = read_flight(log);
   nlohmann::json data = report_data(flight, summary);
   data["file"] = log.filename().string();

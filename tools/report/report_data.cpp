@@ -12,25 +12,39 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFinest = 0.05;            // s, between samples: what the eye can follow
-constexpr double kMostSamples = 3000.0;     // of one series; a longer flight is shown coarser
-constexpr std::size_t kMostPathPoints = 41; // of one plan
-constexpr double kOldestState = 0.2;        // s, age up to which an estimate is compared with tracks
-constexpr double kSlack = 1e-6;             // s, for times that are sums of steps
+constexpr double kFinest = 0.05;             // s, between samples: what the eye can follow
+constexpr double kMostSamples = 3000.0;      // of one series; a longer flight is shown coarser
+constexpr std::size_t kMostPathPoints = 41;  // of one plan
+constexpr double kOldestState = 0.2;         // s, age up to which an estimate is compared with tracks
+constexpr double kSlack = 1e-6;              // s, for times that are sums of steps
 
-Json rounded(double x, double digits) { return std::round(x * digits) / digits; }
-Json millimetres(double x) { return rounded(x, 1e3); }
-Json seconds(double t) { return rounded(t, 1e4); }
-Json centi(double x) { return rounded(x, 1e2); }
+Json rounded(double x, double digits) {
+  return std::round(x * digits) / digits;
+}
+Json millimetres(double x) {
+  return rounded(x, 1e3);
+}
+Json seconds(double t) {
+  return rounded(t, 1e4);
+}
+Json centi(double x) {
+  return rounded(x, 1e2);
+}
 
-double norm(const Triple& v) { return std::hypot(v[0], v[1], v[2]); }
-double distance(const Triple& a, const Triple& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double norm(const Triple& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+double distance(const Triple& a, const Triple& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 void append(Json& list, const Triple& v) {
   for (const double x : v) list.push_back(millimetres(x));
 }
 
-double interval_of(const FlightData& flight) { return std::max(kFinest, (flight.last - flight.first) / kMostSamples); }
+double interval_of(const FlightData& flight) {
+  return std::max(kFinest, (flight.last - flight.first) / kMostSamples);
+}
 
 template <typename Sample>
 std::vector<std::size_t> thin_samples(const std::vector<Sample>& samples, double interval) {
@@ -81,8 +95,12 @@ Json plans_json(const std::vector<PlanRecord>& plans) {
       path.push_back(millimetres(t));
       append(path, {x, y, z});
     }
-    list.push_back({{"t", seconds(plan.t)}, {"ms", centi(plan.ms)}, {"status", plan.status}, {"kept", plan.kept},
-                    {"missed", plan.missed}, {"path", std::move(path)}});
+    list.push_back({{"t", seconds(plan.t)},
+                    {"ms", centi(plan.ms)},
+                    {"status", plan.status},
+                    {"kept", plan.kept},
+                    {"missed", plan.missed},
+                    {"path", std::move(path)}});
   }
   return list;
 }
@@ -125,7 +143,8 @@ std::optional<double> nearest(const Triple& vehicle, double radius, const BodyFr
   return least;
 }
 
-/// The outcome as the log's own events tell it: `replay` names the outcome, `fly` ends with "phase" "done: OUTCOME, ...".
+/// The outcome as the log's own events tell it: `replay` names the outcome, `fly` ends with "phase" "done: OUTCOME,
+/// ...".
 Json outcome_of(const FlightData& flight) {
   static constexpr std::string_view kOutcomes[] = {"reached",    "collision",     "timeout",
                                                    "left_world", "start_blocked", "aborted"};
@@ -165,7 +184,8 @@ Json derived_json(const FlightData& flight, const std::vector<MotionSample>& veh
     return ms[static_cast<std::size_t>(std::max(0.0, place - 1.0))];
   };
   derived["plans"] = ms.size();
-  derived["deadline_misses"] = std::count_if(flight.plans.begin(), flight.plans.end(), [](const PlanRecord& p) { return p.missed; });
+  derived["deadline_misses"] =
+      std::count_if(flight.plans.begin(), flight.plans.end(), [](const PlanRecord& p) { return p.missed; });
   derived["plan_ms"] = {{"p50", rank(0.5)}, {"p99", rank(0.99)}, {"max", ms.back()}};
   return derived;
 }
@@ -203,7 +223,8 @@ std::vector<ClearanceSample> tracked_clearance(const FlightData& flight) {
     if (state == flight.states.begin()) continue;
     const MotionSample& newest = *std::prev(state);
     if (frame.t - newest.t > kOldestState) continue;
-    if (const auto free = nearest(newest.position, radius, frame, newest.t - frame.t)) result.push_back({newest.t, *free});
+    if (const auto free = nearest(newest.position, radius, frame, newest.t - frame.t))
+      result.push_back({newest.t, *free});
   }
   return result;
 }
@@ -217,8 +238,11 @@ Json report_data(const FlightData& flight, const Json* summary) {
   for (const EventRecord& event : flight.events) events.push_back({seconds(event.t), event.name, event.detail});
   Json data;
   data["header"] = flight.header;
-  data["log"] = {{"lines", flight.lines}, {"cut_off", flight.cut_off}, {"not_finite", flight.not_finite},
-                 {"unknown", flight.unknown}, {"interval", interval}};
+  data["log"] = {{"lines", flight.lines},
+                 {"cut_off", flight.cut_off},
+                 {"not_finite", flight.not_finite},
+                 {"unknown", flight.unknown},
+                 {"interval", interval}};
   data["t"] = {seconds(flight.first), seconds(flight.last)};
   data["vehicle"] = motion_json(vehicle, interval);
   data["vehicle"]["from"] = truth ? "truth" : "state";

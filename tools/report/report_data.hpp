@@ -11,7 +11,8 @@
 
 namespace jink::tools {
 
-/// Distance between the vehicle's surface (its centre, where the log tells no radius) and the nearest obstacle's surface.
+/// Distance between the vehicle's surface (its centre, where the log tells no radius) and the nearest obstacle's
+/// surface.
 struct ClearanceSample {
   double t = 0.0;
   double distance = 0.0;
@@ -24,8 +25,8 @@ std::vector<std::size_t> thin(std::span<const double> t, double interval);
 /// From true positions of vehicle and obstacles at equal times; empty where the log has none.
 std::vector<ClearanceSample> true_clearance(const FlightData& flight);
 
-/// From the vehicle's estimate and the tracks, each track moved by its velocity to the time of the newest estimate; empty
-/// where the log lacks one of the two.
+/// From the vehicle's estimate and the tracks, each track moved by its velocity to the time of the newest estimate;
+/// empty where the log lacks one of the two.
 std::vector<ClearanceSample> tracked_clearance(const FlightData& flight);
 
 /// The page's data. `summary` may be null. Keys: see the viewer's data.js.

@@ -1,13 +1,20 @@
 // The camera, and lines and labels in its view: a small perspective renderer on a 2D canvas. Whatever can hide something
 // else is collected with its depth and drawn from far to near.
 const kNear = 0.15;   // m, nearest depth that is drawn
-const kFocal = 1.7;   // focal length over half the canvas height
+const kFocal = 3.2;   // focal length over half the canvas height: a mild perspective
 
 class Camera {
   constructor(bounds) {
     this.bounds = bounds;
     this.width = this.height = 1;
-    this.look(-0.62, 0.5);
+    this.look(...this.aside());
+  }
+
+  /** From the side of the way from start to target, a little behind and above: it then runs across the picture. */
+  aside() {
+    const {start, target} = flight.header;
+    const way = isTriple(start) && isTriple(target) ? [target[0] - start[0], target[1] - start[1]] : [1, 0];
+    return [Math.atan2(-way[1], way[0]) + 0.4, 0.42];
   }
 
   /** Looks from that azimuth (rad, 0: from the south, rising towards the west) and elevation (rad). */
@@ -28,12 +35,18 @@ class Camera {
   /** Goes as near as the bounds allow. */
   fit() {
     this.fitted = true;
-    this.moved = false;
     const corner = (i) => [0, 1, 2].map((k) => ((i >> k) & 1 ? this.bounds.max : this.bounds.min)[k]);
-    const inside = (v) => v && v[0] > 40 && v[0] < this.width - 40 && v[1] > 34 && v[1] < this.height - 30;
-    for (this.distance = 1; this.distance < 1e5; this.distance *= 1.03) {
-      if ([0, 1, 2, 3, 4, 5, 6, 7].every((i) => inside(this.project(corner(i))))) return;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
+    const inside = (v) => v && v[0] > 44 && v[0] < this.width - 44 && v[1] > 40 && v[1] < this.height - 24;
+    for (let round = 0; round < 3; ++round) {  // perspective shifts the middle, and the middle the distance
+      for (this.distance = 1; this.distance < 1e5; this.distance *= 1.02) {
+        if (corners.every((p) => inside(this.project(p)))) break;
+      }
+      const seen = corners.map((p) => this.project(p));
+      const middle = (k) => (Math.min(...seen.map((v) => v[k])) + Math.max(...seen.map((v) => v[k]))) / 2;
+      this.pan(this.width / 2 - middle(0), this.height / 2 - middle(1));
     }
+    this.moved = false;
   }
 
   /** Right, up (screen) and depth of a point, before the perspective. */
@@ -84,7 +97,7 @@ class Camera {
   }
 }
 
-/** What must be in view at first: the path, start and target, and the air around them. */
+/** What must be in view at first: the path, start and target, and the air around them. The ground below it is drawn. */
 function sceneBounds() {
   const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
   const include = (p) => p.forEach((x, k) => { min[k] = Math.min(min[k], x); max[k] = Math.max(max[k], x); });
@@ -94,7 +107,7 @@ function sceneBounds() {
   if (!isNumber(min[0]) && world) { include(world.min); include(world.max); }
   if (!isNumber(min[0])) { include([-5, -5, 0]); include([5, 5, 3]); }
   for (const k of [0, 1]) {
-    const pad = Math.max(1, 2 - (max[k] - min[k]) / 2);
+    const pad = Math.max(1.5, 3 - (max[k] - min[k]) / 2);
     min[k] -= pad;
     max[k] += pad;
   }
@@ -134,13 +147,16 @@ class Ground {
   constructor(bounds) {
     const world = flight.header.world;
     this.world = world && isTriple(world.min) && isTriple(world.max) ? world : null;
-    const from = this.world || {min: [bounds.min[0] - 2, bounds.min[1] - 2, 0], max: [bounds.max[0] + 2, bounds.max[1] + 2, bounds.max[2]]};
-    const extent = Math.max(from.max[0] - from.min[0], from.max[1] - from.min[1]);
+    const extent = Math.max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
     this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => extent / s <= 16) || 2000;
-    this.min = [0, 1].map((k) => Math.floor(from.min[k] / this.step + 1e-9) * this.step);
-    this.max = [0, 1].map((k) => Math.ceil(from.max[k] / this.step - 1e-9) * this.step);
-    this.top = Math.ceil(from.max[2]);
+    this.min = [0, 1].map((k) => Math.floor(bounds.min[k] / this.step + 1e-9) * this.step);
+    this.max = [0, 1].map((k) => Math.ceil(bounds.max[k] / this.step - 1e-9) * this.step);
+    this.top = Math.ceil(bounds.max[2]);
+    this.bottom = bounds.min[2];
   }
+
+  /** The ground and the air over it. */
+  bounds() { return {min: [...this.min, this.bottom], max: [...this.max, this.top]}; }
 
   draw(ctx, camera) {
     for (const k of [0, 1]) {
@@ -170,8 +186,8 @@ class Ground {
     const [outX, outY] = [x === this.min[0] ? x - off : x + off, y === this.min[1] ? y - off : y + off];
     for (let e = this.min[0]; e <= this.max[0] + 1e-9; e += this.step) label(ctx, camera, [e, outY, 0], String(e), "#7b8794");
     for (let n = this.min[1]; n <= this.max[1] + 1e-9; n += this.step) label(ctx, camera, [outX, n, 0], String(n), "#7b8794");
-    label(ctx, camera, [middle[0], y + 3 * (outY - y), 0], "E, m", "#45525f");
-    label(ctx, camera, [x + 3 * (outX - x), middle[1], 0], "N, m", "#45525f");
+    label(ctx, camera, [this.max[0] + 0.8 * this.step, outY, 0], "E, m", "#45525f");
+    label(ctx, camera, [outX, this.max[1] + 0.8 * this.step, 0], "N, m", "#45525f");
     if (camera.elevation > 1.3) return;  // seen from above, heights fall on one point
     const corners = [[this.min[0], this.min[1]], [this.min[0], this.max[1]], [this.max[0], this.min[1]], [this.max[0], this.max[1]]];
     const left = (c) => (camera.project([c[0], c[1], 0]) || [Infinity])[0];

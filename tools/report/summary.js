@@ -13,7 +13,7 @@ function figure(key) {
   const given = flight.summary && flight.summary[key];
   if (given !== null && given !== undefined) return {value: given, note: ""};
   const derived = flight.derived[key];
-  return derived === null || derived === undefined ? null : {value: derived, note: "over the whole log"};
+  return derived === null || derived === undefined ? null : {value: derived, note: "whole log"};
 }
 
 function addTile(name, value, unit, note, bad) {
@@ -36,10 +36,11 @@ function addClearance() {
   const given = flight.summary && flight.summary.min_clearance;
   const measured = flight.clearance;
   const value = isNumber(given) ? given : measured ? measured.min.d : null;
-  const from = isNumber(given) || measured && measured.from === "true" ? "true" : "from tracks";
-  const note = value === null ? "" : from + (measured ? `, at ${measured.min.t.toFixed(2)} s` : "");
+  const from = isNumber(given) || measured && measured.from === "true" ? "true" : "tracks";
+  const placed = value !== null && measured && Math.abs(measured.min.d - value) < 0.01;
+  const note = value === null ? "" : from + (placed ? `, at ${measured.min.t.toFixed(2)} s` : "");
   const centre = value !== null && !isNumber(given) && flight.vehicle.radius === null;
-  addTile("min clearance", value === null ? null : value.toFixed(3), "m", centre ? "from the vehicle's centre" : note, value !== null && value < 0);
+  addTile("min clearance", value === null ? null : value.toFixed(3), "m", centre ? "vehicle's centre, " + from : note, value !== null && value < 0);
 }
 
 function showSummary() {
