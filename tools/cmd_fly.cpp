@@ -107,6 +107,10 @@ int run(const FlyOptions& options) {
     throw UsageError(error.what());
   }
   if (log) observers.push_back(log.get());
+  const std::jthread discovery([&link](const std::stop_token& stop) {
+    while (!stop.stop_requested() && !link->wait_for_autopilot(1.0, stop)) {
+    }
+  });
   bridge::DdsTrackReader tracks(mission.dds_domain, clock);
   bridge::ThreadedPlanner planner({settings.horizon, options.common.seed, options.common.thread_count()}, clock);
   bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});

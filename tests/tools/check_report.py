@@ -25,8 +25,9 @@ LEAST_INK = 0.005  # share of the scene's pixels; the ground grid alone draws mo
 def look(page, fragment):
     """What the page says it drew, and the browser's console errors."""
     with tempfile.TemporaryDirectory() as profile:
-        done = subprocess.run([CHROMIUM, *FLAGS, f"--user-data-dir={profile}", f"file://{os.path.abspath(page)}{fragment}"],
-                              capture_output=True, text=True, timeout=60, check=False)
+        address = f"file://{os.path.abspath(page)}{fragment}"
+        done = subprocess.run([CHROMIUM, *FLAGS, f"--user-data-dir={profile}", address], capture_output=True, text=True,
+                              timeout=60, check=False)
     errors = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
     found = re.search(r'data-ready="([^"]*)"', done.stdout)
     return (json.loads(html.unescape(found.group(1))) if found else None), errors
@@ -39,7 +40,8 @@ def check(page, wanted, fragment="", time=None):
     if drawn is None:
         faults.append("the page never got ready")
     else:
-        faults += [f"{key}: {drawn[key]} drawn, {least} expected" for key, least in wanted.items() if drawn[key] < least]
+        faults += [f"{key}: {drawn[key]} drawn, {least} expected" for key, least in wanted.items()
+                   if drawn[key] < least]
         if drawn["ink"] < LEAST_INK:
             faults.append(f"the scene is blank: ink {drawn['ink']}")
         if time is not None and abs(drawn["t"] - time) > 1e-6:
@@ -58,8 +60,8 @@ def main(arguments):
     if arguments[0].endswith(".html"):
         return 0 if all([check(page, {}) for page in arguments]) else 1
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([arguments[0], "--gtest_filter=FlightReport.TheTwoKindsOfLogs"], check=True, stdout=subprocess.DEVNULL,
-                       env={**os.environ, "JINK_REPORT_DIR": folder})
+        subprocess.run([arguments[0], "--gtest_filter=FlightReport.TheTwoKindsOfLogs"], check=True,
+                       stdout=subprocess.DEVNULL, env={**os.environ, "JINK_REPORT_DIR": folder})
         moving = {"vehicle": 1, "flown": 50, "whole": 50, "plan": 10, "plotted": 500, "tracks": 1}
         results = [
             check(f"{folder}/replay.html", {**moving, "obstacles": 2, "events": 3}, "#t=3.2", 3.2),

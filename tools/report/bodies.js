@@ -4,6 +4,7 @@ const kColors = {
   track: "#7a4fb5", setpoint: "#d0368a", near: "#c8321f"
 };
 const kShownGap = 2.0;      // m, up to which the gap to the nearest obstacle is drawn
+const kVehicleRadius = flight.vehicle.radius || 0.05;  // m, of the drawing; a dot where the log tells none
 const kMostSegments = 700;  // of the whole path, for a smooth picture
 
 /** A sphere shaded from the upper left. Depth to its centre; the size is exact for a sphere in the view's middle. */
@@ -110,11 +111,12 @@ class Scene {
     this.counts = {obstacles: 0, tracks: 0, flown: 0, whole: 0, plan: 0, vehicle: 0};
     this.ground.draw(ctx, camera);
     for (const body of moment.solid) drawShadow(ctx, camera, body.p, body.r);
-    if (moment.vehicle) drawShadow(ctx, camera, moment.vehicle.p, flight.vehicle.radius || 0.1);
+    if (moment.vehicle) drawShadow(ctx, camera, moment.vehicle.p, kVehicleRadius);
     this.collectPaths(moment);
     this.collectBodies(moment);
     this.items.sort((a, b) => b.depth - a.depth);
     for (const item of this.items) item.draw();
+    if (moment.vehicle) this.drawOutline(moment.vehicle.p);
     if (moment.nearest) this.drawNearest(moment);
     return this.counts;
   }
@@ -132,7 +134,8 @@ class Scene {
         line(this.ctx, this.camera, a.p, b.p, kColors.whole, 2);
         ++this.counts.whole;
       } else {
-        this.addSegment(a.p, b.t <= moment.t || !moment.vehicle ? b.p : moment.vehicle.p, kColors.flown, 2.5);
+        const end = b.t <= moment.t || !moment.vehicle ? b.p : moment.vehicle.p;
+        this.addSegment(a.p, end, kColors.flown, 2.5);
         ++this.counts.flown;
       }
     }
@@ -141,7 +144,7 @@ class Scene {
     const color = isBlocked(moment.plan) ? kColors.blocked : kColors.plan;
     for (let i = 4; i + 3 < path.length; i += 4) {
       if (path[i] < moment.t) continue;  // the plan's past is not worth a line
-      this.addSegment([path[i - 3], path[i - 2], path[i - 1]], [path[i + 1], path[i + 2], path[i + 3]], color, 2.5);
+      this.addSegment(path.slice(i - 3, i), path.slice(i + 1, i + 4), color, 2.5);
       ++this.counts.plan;
     }
   }
@@ -154,8 +157,8 @@ class Scene {
       ++this.counts.obstacles;
     }
     for (const track of moment.tracks) {
-      const front = track.p.map((x, k) => x - 1e-3 * (k === 2 ? 0 : 1));
-      this.items.push({depth: camera.view(front)[2] - track.r, draw: () => drawTrack(ctx, camera, track, moment.truth)});
+      const depth = camera.view(track.p)[2] - track.r;  // before the sphere that it belongs to
+      this.items.push({depth, draw: () => drawTrack(ctx, camera, track, moment.truth)});
       ++this.counts.tracks;
     }
     for (const [key, color] of [["start", "#5d6b7a"], ["target", kColors.plan]]) {
@@ -164,8 +167,21 @@ class Scene {
     }
     if (moment.setpoint) this.add(moment.setpoint.p, () => this.drawSetpoint(moment.setpoint.p));
     if (!moment.vehicle) return;
-    this.add(moment.vehicle.p, () => drawSphere(ctx, camera, moment.vehicle.p, flight.vehicle.radius || 0.05, kColors.vehicle, "#ffffff"));
+    const {p} = moment.vehicle;
+    this.add(p, () => drawSphere(ctx, camera, p, kVehicleRadius, kColors.vehicle, "#ffffff"));
     ++this.counts.vehicle;
+  }
+
+  /** Where the vehicle is, even behind or within an obstacle. */
+  drawOutline(p) {
+    const s = this.camera.project(p);
+    if (!s) return;
+    const {ctx} = this;
+    ctx.beginPath();
+    ctx.arc(s[0], s[1], Math.max(2, this.camera.scale * kVehicleRadius / s[2]), 0, 2 * Math.PI);
+    ctx.strokeStyle = kColors.vehicle;
+    ctx.lineWidth = 1.5;
+    ctx.stroke();
   }
 
   drawSetpoint(p) {
@@ -194,8 +210,9 @@ class Scene {
     if (!from || !to) return;
     // Beside the vehicle, away from the obstacle, so that it covers neither.
     const away = Math.hypot(from[0] - to[0], from[1] - to[1]) || 1;
-    const reach = 14 + this.camera.scale * (flight.vehicle.radius || 0.05) / from[2];
+    const reach = 14 + this.camera.scale * kVehicleRadius / from[2];
     const [dx, dy] = [0, 1].map((k) => (from[k] - to[k]) / away * reach);
-    label(this.ctx, this.camera, vehicle.p, `${nearest.free.toFixed(2)} m`, color, dx, dy, dx < -6 ? "right" : dx > 6 ? "left" : "center");
+    const align = dx < -6 ? "right" : dx > 6 ? "left" : "center";
+    label(this.ctx, this.camera, vehicle.p, `${nearest.free.toFixed(2)} m`, color, dx, dy, align);
   }
 }

@@ -1,5 +1,6 @@
-// The flight's data, as report_data.cpp writes them, and the questions asked of them. All lengths in m, times in s, ENU.
-//   t [first, last]; vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []}; setpoints {t, p, speed};
+// The flight's data, as report_data.cpp writes them, and the questions asked of them. Lengths in m, times in s, ENU.
+//   t [first, last]; vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []};
+//   setpoints {t, p, speed};
 //   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz),...], ...]};
 //   plans [{t, ms, status, kept, missed, path [t,x,y,z,...]}]; events [[t, name, detail]];
 //   clearance null | {from: "true"|"tracks", t, d, min {t, d}}; summary null | jink-flight/1; derived {...}.
@@ -30,9 +31,12 @@ function motionAt(series, t) {
   const i = lastUpTo(series.t, t + 1e-6);
   const last = series.t.length - 1;
   if (i < 0) return null;
-  if (i >= last) return t - series.t[last] > kOldestTracks ? null : {p: point(series.p, last), speed: series.speed[last]};
+  if (i >= last) {
+    return t - series.t[last] > kOldestTracks ? null : {p: point(series.p, last), speed: series.speed[last]};
+  }
   const s = clamp((t - series.t[i]) / (series.t[i + 1] - series.t[i]), 0, 1);
-  return {p: mix(point(series.p, i), point(series.p, i + 1), s), speed: series.speed[i] + s * (series.speed[i + 1] - series.speed[i])};
+  const speed = series.speed[i] + s * (series.speed[i + 1] - series.speed[i]);
+  return {p: mix(point(series.p, i), point(series.p, i + 1), s), speed};
 }
 
 function bodyFrom(list, k, stride) {
@@ -53,7 +57,8 @@ function bodiesAt(series, t, oldest) {
   for (let k = 0; k < series.frames[i].length; k += series.stride) {
     const body = bodyFrom(series.frames[i], k, series.stride);
     const there = places.get(body.id);
-    if (there !== undefined) body.p = mix(body.p, [next[there + 1], next[there + 2], next[there + 3]], clamp((t - series.t[i]) / gap, 0, 1));
+    const share = clamp((t - series.t[i]) / gap, 0, 1);
+    if (there !== undefined) body.p = mix(body.p, next.slice(there + 1, there + 4), share);
     bodies.push(body);
   }
   return bodies;
@@ -75,7 +80,8 @@ function eventAt(name, t) {
 /** How an event is coloured: good, warn, bad or nothing. */
 function tone(name, detail) {
   if (name === "reached" || /^done: reached/.test(detail)) return "good";
-  if (/^(collision|timeout|left_world|start_blocked|aborted)$/.test(name) || /^done: (?!reached)/.test(detail)) return "bad";
+  if (/^(collision|timeout|left_world|start_blocked|aborted)$/.test(name)) return "bad";
+  if (/^done: (?!reached)/.test(detail)) return "bad";
   if (name === "plan_status") return /^(blocked|start_blocked|invalid)$/.test(detail) ? "bad" : "";
   return /^(hazard|refused|send_failed|reference_lost|tracks_refused)$/.test(name) ? "warn" : "";
 }

@@ -15,7 +15,8 @@ foreach(part IN LISTS parts)
 endforeach()
 string(HEX "${page}" bytes)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
-string(REGEX REPLACE "(0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,)" "  \\1\n" bytes "${bytes}")
+string(REPEAT "0x..," 20 row)
+string(REGEX REPLACE "(${row})" "\\1\n" bytes "${bytes}")
 file(WRITE ${OUTPUT} "// Generated from ${PAGE} by embed.cmake: do not edit.
 #include \"tools/report/template.hpp\"
 

@@ -76,12 +76,14 @@ Body body_of(const Json& record, bool moving) {
 /// Takes the records one by one. What it remembers is what makes several records one thing.
 class Reader {
  public:
+  explicit Reader(FlightData& flight) : data_(flight) {}
+
   void header(const Json& record) {
     if (!record.is_object() || record.value("type", Json()) != "header")
       refuse("the first line is not a jink-log/1 header");
     const Json format = record.value("format", Json());
     if (format != "jink-log/1") refuse("format: " + format.dump() + " is not \"jink-log/1\"");
-    data.header = record;
+    data_.header = record;
   }
 
   void take(const Json& record) {
@@ -90,38 +92,36 @@ class Reader {
     try {
       const double t = number_of(record, "t");
       if (!add(type, t, record)) {
-        ++data.unknown;
+        ++data_.unknown;
         return;
       }
-      data.first = any_ ? std::min(data.first, t) : t;
-      data.last = any_ ? std::max(data.last, t) : t;
+      data_.first = any_ ? std::min(data_.first, t) : t;
+      data_.last = any_ ? std::max(data_.last, t) : t;
       any_ = true;
     } catch (const NotFinite&) {
-      ++data.not_finite;
+      ++data_.not_finite;
     } catch (const std::invalid_argument& error) {
       refuse(type + " " + error.what());
     }
   }
 
-  FlightData data;
-
  private:
   bool add(const std::string& type, double t, const Json& record) {
     if (type == "truth") {
-      data.truth.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
+      data_.truth.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
     } else if (type == "obstacles") {
       const Body body = body_of(record, false);
-      if (data.obstacles.empty() || data.obstacles.back().t != t) data.obstacles.push_back({t, {}});
-      data.obstacles.back().bodies.push_back(body);
+      if (data_.obstacles.empty() || data_.obstacles.back().t != t) data_.obstacles.push_back({t, {}});
+      data_.obstacles.back().bodies.push_back(body);
     } else if (type == "state") {
-      data.states.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
+      data_.states.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
       note_mode(t, record);
     } else if (type == "tracks") {
       BodyFrame frame{t, {}};
       const Json& tracks = member(record, "tracks");
       if (!tracks.is_array()) refuse("\"tracks\" is not a list");
       for (const Json& track : tracks) frame.bodies.push_back(body_of(track, true));
-      data.tracks.push_back(std::move(frame));
+      data_.tracks.push_back(std::move(frame));
     } else if (type == "plan") {
       PlanRecord plan{
           t, number_of(record, "ms"), text_of(record, "status"), flag_of(record, "kept"), flag_of(record, "missed"),
@@ -129,11 +129,11 @@ class Reader {
       const Json& path = member(record, "path");
       if (!path.is_array()) refuse("\"path\" is not a list");
       for (const Json& point : path) plan.path.push_back(numbers<4>(point, "path"));
-      data.plans.push_back(std::move(plan));
+      data_.plans.push_back(std::move(plan));
     } else if (type == "setpoint") {
-      data.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
+      data_.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
     } else if (type == "event") {
-      data.events.push_back({t, text_of(record, "name"), text_of(record, "detail")});
+      data_.events.push_back({t, text_of(record, "name"), text_of(record, "detail")});
     } else {
       return false;
     }
@@ -143,10 +143,11 @@ class Reader {
   void note_mode(double t, const Json& record) {
     std::string mode = text_of(record, "mode") + (flag_of(record, "armed") ? ", armed" : ", disarmed");
     if (mode == mode_) return;
-    data.events.push_back({t, "mode", mode});
+    data_.events.push_back({t, "mode", mode});
     mode_ = std::move(mode);
   }
 
+  FlightData& data_;
   bool any_ = false;
   std::string mode_;
 };
@@ -156,7 +157,8 @@ class Reader {
 FlightData read_flight(const std::filesystem::path& log) {
   std::ifstream in(log, std::ios::binary);
   if (!in) throw std::runtime_error(log.string() + ": cannot read the flight log");
-  Reader reader;
+  FlightData flight;
+  Reader reader(flight);
   std::size_t line_number = 0;
   std::size_t broken = 0;  // the line that is no JSON; an error only once another follows it
   const auto fail = [&](std::size_t line, const std::string& what) {
@@ -166,15 +168,15 @@ FlightData read_flight(const std::filesystem::path& log) {
     ++line_number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     if (broken != 0) fail(broken, "is not JSON");
-    ++reader.data.lines;
+    ++flight.lines;
     const Json record = Json::parse(line, nullptr, false);
     if (record.is_discarded()) {
       broken = line_number;
-      if (reader.data.header.is_null()) fail(line_number, "the first line is not a jink-log/1 header");
+      if (flight.header.is_null()) fail(line_number, "the first line is not a jink-log/1 header");
       continue;
     }
     try {
-      if (reader.data.header.is_null()) {
+      if (flight.header.is_null()) {
         reader.header(record);
       } else {
         reader.take(record);
@@ -184,9 +186,9 @@ FlightData read_flight(const std::filesystem::path& log) {
     }
   }
   if (in.bad()) throw std::runtime_error(log.string() + ": cannot be read to its end");
-  if (reader.data.header.is_null()) fail(1, "the first line is not a jink-log/1 header: the file is empty");
-  reader.data.cut_off = broken != 0 ? 1 : 0;
-  return std::move(reader.data);
+  if (flight.header.is_null()) fail(1, "the first line is not a jink-log/1 header: the file is empty");
+  flight.cut_off = broken != 0 ? 1 : 0;
+  return flight;
 }
 
 }  // namespace jink::tools

@@ -51,6 +51,7 @@ struct EventRecord {
   std::string detail;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): moving a json value does not throw, it only asserts
 struct FlightData {
   nlohmann::json header;
   std::vector<MotionSample> truth, states, setpoints;

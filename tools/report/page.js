@@ -151,8 +151,8 @@ function connectPlots() {
     if (seeking) setTime(t);
     const reach = plots.time(plots.x(tFirst) + 4) - tFirst;  // s, of four pixels
     const close = flight.events.filter((event) => Math.abs(event[0] - t) <= reach).slice(0, 6);
-    const values = plots.series.map((s) => [s, plots.valueAt(s, t)]).filter(([, value]) => value !== null);
-    const text = values.map(([s, value]) => `${s.title} ${value.toFixed(2)} ${s.unit}`);
+    const known = plots.series.filter((s) => plots.valueAt(s, t) !== null);
+    const text = known.map((s) => `${s.title} ${plots.valueAt(s, t).toFixed(2)} ${s.unit}`);
     showTip([`${t.toFixed(2)} s`, ...text, ...close.map(eventText)].join("\n"), e);
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { seeking = false; });
@@ -163,8 +163,10 @@ function connectKeys() {
   window.addEventListener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey) return;
     const step = kStep * (e.shiftKey ? 10 : 1);
-    const action = {" ": () => setPlaying(!playing), ArrowLeft: () => setTime(now - step), ArrowRight: () => setTime(now + step),
-                    Home: () => setTime(tFirst), End: () => setTime(tLast)}[e.key];
+    const action = {
+      " ": () => setPlaying(!playing), ArrowLeft: () => setTime(now - step), ArrowRight: () => setTime(now + step),
+      Home: () => setTime(tFirst), End: () => setTime(tLast)
+    }[e.key];
     if (!action) return;
     e.preventDefault();
     action();

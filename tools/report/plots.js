@@ -1,5 +1,5 @@
 // Four plots over one time axis, with a cursor. One canvas.
-const kPlot = {left: 58, right: 14, top: 4, height: 78, gap: 10, axis: 22};
+const kPlot = {left: 58, right: 14, top: 4, height: 70, gap: 10, axis: 22};
 
 /** Round numbers that divide [low, high] in about `count` parts. */
 function axisTicks(low, high, count) {
@@ -18,19 +18,19 @@ function plotSeries() {
   const {clearance, vehicle, setpoints, plans} = flight;
   const source = !clearance ? "" : clearance.from === "true" ? "true" : "from tracks";
   const to = flight.vehicle.radius === null ? "vehicle's centre to" : "to";
-  const who = vehicle.from === "truth" ? "true" : "estimate";
+  const who = (vehicle.from === "truth" ? "true" : "estimate") + (setpoints.t.length ? "; grey: setpoint" : "");
   const motion = (y, set) => {
     const lines = [];
     if (setpoints.t.length) lines.push({t: setpoints.t, y: set, color: "#b9c2cc", width: 1.2});
     if (vehicle.t.length) lines.push({t: vehicle.t, y, color: kColors.vehicle, width: 1.6, name: true});
     return lines;
   };
+  const gap = clearance ? [{t: clearance.t, y: clearance.d, color: "#b06a10", width: 1.6, name: true}] : [];
   return [
-    {title: "clearance", note: `${to} the nearest obstacle${source ? ", " + source : ""}`, unit: "m", zero: true,
-     lines: clearance ? [{t: clearance.t, y: clearance.d, color: "#b06a10", width: 1.6, name: true}] : [], min: clearance && clearance.min,
-     ceiling: 6},
-    {title: "speed", note: `${who}; grey: setpoint`, unit: "m/s", lines: motion(vehicle.speed, setpoints.speed), floor: 0},
-    {title: "height", note: `${who}; grey: setpoint`, unit: "m", lines: motion(heights(vehicle), heights(setpoints)), floor: 0},
+    {title: "clearance", note: `${to} the nearest obstacle${source ? ", " + source : ""}`, unit: "m", lines: gap,
+     min: clearance && clearance.min, zero: true, ceiling: 6},
+    {title: "speed", note: who, unit: "m/s", lines: motion(vehicle.speed, setpoints.speed), floor: 0},
+    {title: "height", note: who, unit: "m", lines: motion(heights(vehicle), heights(setpoints)), floor: 0},
     {title: "plan time", note: "red: blocked, ring: deadline missed", unit: "ms", lines: [], plans, floor: 0}
   ];
 }
@@ -52,11 +52,12 @@ class Plots {
     let high = values.reduce((a, b) => Math.max(a, b), -Infinity);
     if (!isNumber(low) || !isNumber(high)) [low, high] = [0, 1];
     if (high - low < 0.5) high = low + 0.5;
-    return [low - (low < 0 ? 0.05 * (high - low) : 0), high + 0.12 * (high - low)];
+    return [low - (low < 0 ? 0.05 * (high - low) : 0), high + 0.32 * (high - low)];  // the title's room
   }
 
-  x(t) { return kPlot.left + (t - tFirst) / (tLast - tFirst || 1) * (this.width - kPlot.left - kPlot.right); }
-  time(x) { return clamp(tFirst + (x - kPlot.left) / (this.width - kPlot.left - kPlot.right) * (tLast - tFirst), tFirst, tLast); }
+  get span() { return this.width - kPlot.left - kPlot.right; }
+  x(t) { return kPlot.left + (t - tFirst) / (tLast - tFirst || 1) * this.span; }
+  time(x) { return clamp(tFirst + (x - kPlot.left) / this.span * (tLast - tFirst), tFirst, tLast); }
 
   draw(t) {
     const ratio = window.devicePixelRatio || 1;
@@ -104,18 +105,18 @@ class Plots {
     const y = s.y = (v) => top + kPlot.height * (1 - (v - s.range[0]) / (s.range[1] - s.range[0]));
     ctx.strokeStyle = "#dfe4ea";
     ctx.lineWidth = 1;
-    ctx.strokeRect(kPlot.left + 0.5, top + 0.5, this.width - kPlot.left - kPlot.right - 1, kPlot.height - 1);
+    ctx.strokeRect(kPlot.left + 0.5, top + 0.5, this.span - 1, kPlot.height - 1);
     const {ticks, digits} = axisTicks(s.range[0], s.range[1], 3);
     ctx.textAlign = "right";
     for (const v of ticks) {
       ctx.fillStyle = s.zero && Math.abs(v) < 1e-9 ? "#c8321f99" : "#eef1f4";
-      ctx.fillRect(kPlot.left + 1, Math.round(y(v)) - 0.5, this.width - kPlot.left - kPlot.right - 2, 1);
+      ctx.fillRect(kPlot.left + 1, Math.round(y(v)) - 0.5, this.span - 2, 1);
       ctx.fillStyle = "#7b8794";
       if (y(v) > top + 4) ctx.fillText(v.toFixed(digits), kPlot.left - 6, y(v));
     }
     ctx.save();
     ctx.beginPath();
-    ctx.rect(kPlot.left, top, this.width - kPlot.left - kPlot.right, kPlot.height);
+    ctx.rect(kPlot.left, top, this.span, kPlot.height);
     ctx.clip();
     for (const l of s.lines) this.drawLine(ctx, l, y);
     if (s.plans) this.drawPlans(ctx, s.plans, y);
@@ -130,8 +131,9 @@ class Plots {
     ctx.lineWidth = 4;
     ctx.strokeStyle = "#ffffffe0";
     let x = kPlot.left + 8;
+    const note = `${s.unit}, ${empty ? "not in this log" : s.note}`;
     for (const [text, font, color] of [[s.title, "600 12px system-ui, sans-serif", "#1c2530"],
-                                       [`${s.unit}, ${empty ? "not in this log" : s.note}`, "11px system-ui, sans-serif", "#7b8794"]]) {
+                                       [note, "11px system-ui, sans-serif", "#7b8794"]]) {
       ctx.font = font;
       ctx.strokeText(text, x, top + 11);
       ctx.fillStyle = color;
@@ -146,7 +148,8 @@ class Plots {
     // A gap in the log is a gap in the line.
     const gap = Math.max(1, 5 * flight.log.interval);
     for (let i = 0; i < l.t.length; ++i) {
-      if (i === 0 || l.t[i] - l.t[i - 1] > gap) ctx.moveTo(this.x(l.t[i]), y(l.y[i])); else ctx.lineTo(this.x(l.t[i]), y(l.y[i]));
+      const [px, py] = [this.x(l.t[i]), y(l.y[i])];
+      if (i === 0 || l.t[i] - l.t[i - 1] > gap) ctx.moveTo(px, py); else ctx.lineTo(px, py);
     }
     ctx.strokeStyle = l.color;
     ctx.lineWidth = l.width;
@@ -188,11 +191,13 @@ class Plots {
     ctx.fillText(text, px + (left ? -7 : 7), py - 8);
   }
 
-  /** The value of panel s at t, or null: the newest sample not older than a second. */
+  /** The value of panel s at t: between two samples, or the newest plan's; null with none in the last second. */
   valueAt(s, t) {
     const main = s.plans ? {t: planTimes, y: s.plans.map((plan) => plan.ms)} : s.lines.find((l) => l.name);
     const i = main ? lastUpTo(main.t, t + 1e-6) : -1;
-    return i < 0 || t - main.t[i] > 1 ? null : main.y[i];
+    if (i < 0 || t - main.t[i] > 1) return null;
+    if (s.plans || i + 1 >= main.t.length || main.t[i + 1] - main.t[i] > 1) return main.y[i];
+    return main.y[i] + clamp((t - main.t[i]) / (main.t[i + 1] - main.t[i]), 0, 1) * (main.y[i + 1] - main.y[i]);
   }
 
   drawCursor(t) {

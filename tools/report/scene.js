@@ -1,5 +1,5 @@
-// The camera, and lines and labels in its view: a small perspective renderer on a 2D canvas. Whatever can hide something
-// else is collected with its depth and drawn from far to near.
+// The camera, and lines and labels in its view: a small perspective renderer on a 2D canvas. Whatever can hide
+// something else is collected with its depth and drawn from far to near.
 const kNear = 0.15;   // m, nearest depth that is drawn
 const kFocal = 3.2;   // focal length over half the canvas height: a mild perspective
 
@@ -52,7 +52,8 @@ class Camera {
   /** Right, up (screen) and depth of a point, before the perspective. */
   view(p) {
     const [x, y, z] = [p[0] - this.center[0], p[1] - this.center[1], p[2] - this.center[2]];
-    const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
+    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     const right = ca * x - sa * y;
     const forward = sa * x + ca * y;
     return [right, z * ce + forward * se, this.distance + forward * ce - z * se];
@@ -97,15 +98,26 @@ class Camera {
   }
 }
 
+/** The flight volume, null where the log has none. */
+function flightVolume() {
+  const world = flight.header.world;
+  return world && isTriple(world.min) && isTriple(world.max) ? world : null;
+}
+
 /** What must be in view at first: the path, start and target, and the air around them. The ground below it is drawn. */
 function sceneBounds() {
   const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
-  const include = (p) => p.forEach((x, k) => { min[k] = Math.min(min[k], x); max[k] = Math.max(max[k], x); });
+  const include = (p) => p.forEach((x, k) => {
+    min[k] = Math.min(min[k], x);
+    max[k] = Math.max(max[k], x);
+  });
   for (let i = 0; i < flight.vehicle.t.length; ++i) include(point(flight.vehicle.p, i));
   for (const key of ["start", "target"]) if (isTriple(flight.header[key])) include(flight.header[key]);
-  const world = flight.header.world;
-  if (!isNumber(min[0]) && world) { include(world.min); include(world.max); }
-  if (!isNumber(min[0])) { include([-5, -5, 0]); include([5, 5, 3]); }
+  const world = flightVolume() || {min: [-5, -5, 0], max: [5, 5, 3]};
+  if (!isNumber(min[0])) {
+    include(world.min);
+    include(world.max);
+  }
   for (const k of [0, 1]) {
     const pad = Math.max(1.5, 3 - (max[k] - min[k]) / 2);
     min[k] -= pad;
@@ -142,11 +154,10 @@ function label(ctx, camera, p, text, color, dx = 0, dy = 0, align = "center") {
   ctx.fillText(text, s[0] + dx, s[1] + dy);
 }
 
-/** The ground: a grid with metre labels on the edges towards the camera, and a height scale on the leftmost corner. */
+/** The ground: a grid with metre labels on the edges towards the camera, and heights on the corner away from both. */
 class Ground {
   constructor(bounds) {
-    const world = flight.header.world;
-    this.world = world && isTriple(world.min) && isTriple(world.max) ? world : null;
+    this.world = flightVolume();
     const extent = Math.max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
     this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => extent / s <= 16) || 2000;
     this.min = [0, 1].map((k) => Math.floor(bounds.min[k] / this.step + 1e-9) * this.step);
@@ -161,8 +172,8 @@ class Ground {
   draw(ctx, camera) {
     for (const k of [0, 1]) {
       for (let x = this.min[k]; x <= this.max[k] + 1e-9; x += this.step) {
-        const [a, b] = k === 0 ? [[x, this.min[1], 0], [x, this.max[1], 0]] : [[this.min[0], x, 0], [this.max[0], x, 0]];
-        line(ctx, camera, a, b, x === 0 ? "#aeb9c4" : "#e4e8ed", 1);
+        const end = (limits) => (k === 0 ? [x, limits[1], 0] : [limits[0], x, 0]);
+        line(ctx, camera, end(this.min), end(this.max), x === 0 ? "#aeb9c4" : "#e4e8ed", 1);
       }
     }
     if (this.world) this.drawVolume(ctx, camera);
@@ -184,17 +195,21 @@ class Ground {
     const x = nearer([this.min[0], middle[1], 0], [this.max[0], middle[1], 0])[0];
     const off = 0.35 * this.step;
     const [outX, outY] = [x === this.min[0] ? x - off : x + off, y === this.min[1] ? y - off : y + off];
-    for (let e = this.min[0]; e <= this.max[0] + 1e-9; e += this.step) label(ctx, camera, [e, outY, 0], String(e), "#7b8794");
-    for (let n = this.min[1]; n <= this.max[1] + 1e-9; n += this.step) label(ctx, camera, [outX, n, 0], String(n), "#7b8794");
+    for (let e = this.min[0]; e <= this.max[0] + 1e-9; e += this.step) {
+      label(ctx, camera, [e, outY, 0], String(e), "#7b8794");
+    }
+    for (let n = this.min[1]; n <= this.max[1] + 1e-9; n += this.step) {
+      label(ctx, camera, [outX, n, 0], String(n), "#7b8794");
+    }
     label(ctx, camera, [this.max[0] + 0.8 * this.step, outY, 0], "E, m", "#45525f");
     label(ctx, camera, [outX, this.max[1] + 0.8 * this.step, 0], "N, m", "#45525f");
     if (camera.elevation > 1.3) return;  // seen from above, heights fall on one point
-    const corners = [[this.min[0], this.min[1]], [this.min[0], this.max[1]], [this.max[0], this.min[1]], [this.max[0], this.max[1]]];
-    const left = (c) => (camera.project([c[0], c[1], 0]) || [Infinity])[0];
-    const c = corners.reduce((best, other) => (left(other) < left(best) ? other : best));
+    const c = [x === this.min[0] ? this.max[0] : this.min[0], y === this.min[1] ? this.max[1] : this.min[1]];
     line(ctx, camera, [c[0], c[1], 0], [c[0], c[1], this.top], "#aeb9c4", 1);
     const rise = this.top > 40 ? 10 : this.top > 12 ? 5 : this.top > 5 ? 2 : 1;
-    for (let u = rise; u <= this.top; u += rise) label(ctx, camera, [c[0], c[1], u], String(u), "#7b8794", -8, 0, "right");
+    for (let u = rise; u <= this.top; u += rise) {
+      label(ctx, camera, [c[0], c[1], u], String(u), "#7b8794", -8, 0, "right");
+    }
     label(ctx, camera, [c[0], c[1], this.top], "U, m", "#45525f", 0, -12);
   }
 }

@@ -40,7 +40,8 @@ function addClearance() {
   const placed = value !== null && measured && Math.abs(measured.min.d - value) < 0.01;
   const note = value === null ? "" : from + (placed ? `, at ${measured.min.t.toFixed(2)} s` : "");
   const centre = value !== null && !isNumber(given) && flight.vehicle.radius === null;
-  addTile("min clearance", value === null ? null : value.toFixed(3), "m", centre ? "vehicle's centre, " + from : note, value !== null && value < 0);
+  const shown = value === null ? null : value.toFixed(3);
+  addTile("min clearance", shown, "m", centre ? `vehicle's centre, ${from}` : note, value !== null && value < 0);
 }
 
 function showSummary() {
@@ -68,17 +69,22 @@ function showAbout() {
   const name = header.scenario ?? header.mission;
   const text = (value) => (typeof value === "string" ? value : JSON.stringify(value));
   const parts = [["seed", header.seed], ["jink", header.version], ["log", flight.file]];
-  if (name !== undefined) $("about").append(header.scenario !== undefined ? "scenario " : "mission ", element("b", text(name)), " · ");
-  $("about").append(parts.filter(([, value]) => value !== undefined).map(([key, value]) => `${key} ${text(value)}`).join(" · "));
-  if (name !== undefined) document.title = `${text(name)} – jink flight report`;
+  if (name !== undefined) {
+    $("about").append(header.scenario !== undefined ? "scenario " : "mission ", element("b", text(name)), " · ");
+    document.title = `${text(name)} – jink flight report`;
+  }
+  const known = parts.filter(([, value]) => value !== undefined);
+  $("about").append(known.map(([key, value]) => `${key} ${text(value)}`).join(" · "));
   const warnings = [];
   if (log.cut_off) warnings.push("the log's last line is cut off (the writer was killed) and was skipped");
   if (log.not_finite) warnings.push(`${log.not_finite} records without finite numbers were skipped`);
   if (log.unknown) warnings.push(`${log.unknown} records of an unknown type were skipped`);
-  if (flight.vehicle.radius === null && flight.vehicle.t.length) warnings.push("the vehicle's radius is not in this log: it is drawn as a point");
+  if (flight.vehicle.radius === null && flight.vehicle.t.length) {
+    warnings.push("the vehicle's radius is not in this log: it is drawn as a point");
+  }
   $("warning").hidden = warnings.length === 0;
   $("warning").textContent = warnings.length ? `Note: ${warnings.join("; ")}.` : "";
-  const parameters = header.parameters && typeof header.parameters === "object" ? Object.entries(header.parameters) : [];
+  const parameters = Object.entries(header.parameters instanceof Object ? header.parameters : {});
   $("parameters").hidden = parameters.length === 0;
   for (const [key, value] of parameters) {
     const row = element("tr", "");
@@ -88,12 +94,6 @@ function showAbout() {
 }
 
 function showLegend() {
-  const truth = flight.obstacles !== null;
-  const rows = [["vehicle", (c) => dot(c, kColors.vehicle)], ["obstacle" + (truth ? "" : ", as tracked"), (c) => dot(c, kColors.obstacle)],
-                [truth ? "track, 1 s ahead" : "1 s ahead", (c) => stroke(c, kColors.track, [4, 3])],
-                ["plan", (c) => stroke(c, kColors.plan)], ["plan, blocked", (c) => stroke(c, kColors.blocked)],
-                ["flown", (c) => stroke(c, kColors.flown)], ["still to come", (c) => stroke(c, kColors.whole)],
-                ["setpoint", (c) => { stroke(c, kColors.setpoint); }]];
   const dot = (c, color) => {
     c.fillStyle = color;
     c.beginPath();
@@ -105,11 +105,25 @@ function showLegend() {
     c.lineWidth = 4;
     c.setLineDash(dash.map((d) => 2 * d));
     c.beginPath();
-    if (color === kColors.setpoint) { c.moveTo(26, 3); c.lineTo(26, 25); c.moveTo(15, 14); c.lineTo(37, 14); }
-    else { c.moveTo(2, 14); c.lineTo(50, 14); }
+    const cross = color === kColors.setpoint;
+    const ends = cross ? [[15, 14], [37, 14], [26, 3], [26, 25]] : [[2, 14], [50, 14]];
+    ends.forEach(([x, y], i) => (i % 2 ? c.lineTo(x, y) : c.moveTo(x, y)));
     c.stroke();
   };
-  for (const [name, draw] of rows) {
+  const truth = flight.obstacles !== null;
+  const [tracks, plans, path] = [flight.tracks !== null, flight.plans.length > 0, flight.vehicle.t.length > 0];
+  const rows = [
+    ["vehicle", (c) => dot(c, kColors.vehicle), path],
+    [truth ? "obstacle" : "obstacle, as tracked", (c) => dot(c, kColors.obstacle), truth || tracks],
+    [truth ? "track, 1 s ahead" : "1 s ahead", (c) => stroke(c, kColors.track, [4, 3]), tracks],
+    ["plan", (c) => stroke(c, kColors.plan), plans],
+    ["plan, blocked", (c) => stroke(c, kColors.blocked), flight.plans.some(isBlocked)],
+    ["flown", (c) => stroke(c, kColors.flown), path],
+    ["still to come", (c) => stroke(c, kColors.whole), path],
+    ["setpoint", (c) => stroke(c, kColors.setpoint), flight.setpoints.t.length > 0]
+  ];
+  for (const [name, draw, present] of rows) {
+    if (!present) continue;
     const row = element("div", "");
     const icon = document.createElement("canvas");
     icon.width = 52;
@@ -124,13 +138,14 @@ function showLegend() {
 function showNow(moment) {
   const {vehicle, nearest, plan} = moment;
   const alarm = nearest && nearest.free < 0;
+  const what = moment.truth ? "obstacle" : "track";
+  const extra = plan ? (plan.kept ? ", kept" : "") + (plan.missed ? ", late" : "") : "";
   const [mode, phase] = [eventAt("mode", moment.t), eventAt("phase", moment.t)];
   const rows = [
     ["position", vehicle ? vehicle.p.map((x) => x.toFixed(2)).join(", ") : "–"],
     ["speed", vehicle ? `${vehicle.speed.toFixed(2)} m/s` : "–"],
-    ["clearance", nearest ? `${nearest.free.toFixed(2)} m, ${moment.truth ? "obstacle" : "track"} ${nearest.body.id}` : "–", alarm],
-    ["plan", plan ? `${plan.status}, ${plan.ms.toFixed(1)} ms${plan.kept ? ", kept" : ""}${plan.missed ? ", late" : ""}` : "–",
-     plan && isBlocked(plan)],
+    ["clearance", nearest ? `${nearest.free.toFixed(2)} m, ${what} ${nearest.body.id}` : "–", alarm],
+    ["plan", plan ? `${plan.status}, ${plan.ms.toFixed(1)} ms${extra}` : "–", plan && isBlocked(plan)],
     ["tracks", flight.tracks ? String(moment.tracks.length) : "–"],
     ["mode", mode ? mode[2] : "–"],
     ["phase", phase ? phase[2].split(":")[0] : "–"]
