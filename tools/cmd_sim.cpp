@@ -37,6 +37,7 @@ struct SimOptions {
   int domain = 0;
   int instance = 0;
   bool no_vehicle = false;
+  bool no_tracks = false;
 };
 
 double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
@@ -46,7 +47,8 @@ class Simulator {
  public:
   Simulator(const SimOptions& options, const config::Scenario& scenario, const Printer& printer, FlightLog* log)
       : options_(options), printer_(printer), log_(log), world_(scenario), sensing_(scenario.sensing, options.common.seed),
-        writer_(options.domain), last_(scenario.start) {
+        last_(scenario.start) {
+    if (!options.no_tracks) writer_ = std::make_unique<bridge::DdsTrackWriter>(options.domain);
     if (!options.no_vehicle) {
       sim::AutopilotOptions vehicle;
       vehicle.limits = scenario.vehicle;
@@ -83,7 +85,8 @@ class Simulator {
   [[nodiscard]] bool failed() const { return flight_.outcome == bridge::Outcome::kCollision || flight_.outcome == bridge::Outcome::kLeftWorld; }
 
   [[nodiscard]] std::string status() const {
-    const std::string tracks = fmt::format("{} track reader{}", writer_.readers(), writer_.readers() == 1 ? "" : "s");
+    const int readers = writer_ ? writer_->readers() : 0;
+    const std::string tracks = fmt::format("{} track reader{}", readers, readers == 1 ? "" : "s");
     if (!autopilot_) return fmt::format("t {:6.1f} s  {}", now_, tracks);
     const Vec3& p = autopilot_->true_motion().position;
     return fmt::format("t {:6.1f} s  {}  at ({:.1f}, {:.1f}, {:.1f})  {:.1f} m to target  clearance {:.2f} m  {}",
@@ -137,7 +140,7 @@ class Simulator {
     sim::TrackMessage message;
     while (sensing_.poll(now, message)) {
       const double age = (now - message.stamp) / options_.speed;
-      if (!writer_.publish(message.tracks, unix_now() - age)) say("publish_failed", "a track message could not be published");
+      if (writer_ && !writer_->publish(message.tracks, unix_now() - age)) say("publish_failed", "a track message could not be published");
     }
   }
 
@@ -179,7 +182,7 @@ class Simulator {
   FlightLog* log_;
   sim::World world_;
   sim::SensingPipeline sensing_;
-  bridge::DdsTrackWriter writer_;
+  std::unique_ptr<bridge::DdsTrackWriter> writer_;  // none: somebody else tells of the obstacles
   std::optional<sim::Autopilot> autopilot_;
   std::unique_ptr<sim::MavlinkEndpoint> endpoint_;
   std::optional<double> clock_start_;
@@ -218,8 +221,9 @@ int run(const SimOptions& options) {
     }
   }
   Simulator simulator(options, scenario, printer, log.get());
-  printer.line(fmt::format("scenario {}: {} obstacles as {} on DDS domain {}, seed {}", scenario.name, scenario.obstacles.size(),
-                           bridge::kTracksTopic, options.domain, options.common.seed));
+  printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
+                           options.no_tracks ? ", not told" : fmt::format(" as {} on DDS domain {}", bridge::kTracksTopic, options.domain),
+                           options.common.seed));
   if (!options.no_vehicle) {
     printer.line(fmt::format("autopilot: MAVLink from UDP {} to 127.0.0.1:{} (companion) and :14550 (ground station), system {}",
                              14580 + options.instance, 14540 + options.instance, options.instance + 1));
@@ -245,6 +249,7 @@ Subcommand add_sim(CLI::App& jink) {
   app->add_option("--clock", options->clock, "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
       ->check(CLI::IsMember({"start", "immediate"}))->capture_default_str();
   app->add_flag("--no-vehicle", options->no_vehicle, "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
+  app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer tells of the obstacles");
   app->add_option("--domain", options->domain, "DDS domain, 0 to 232")->check(CLI::Range(0, 232))->capture_default_str();
   app->add_option("--instance", options->instance, "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9")->check(CLI::Range(0, 9))->capture_default_str();
   app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")->check(CLI::Range(0.1, 1e6));

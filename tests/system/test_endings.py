@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How `jink fly` ends when things go wrong: a missing peer, tracks that stop, Ctrl-C, a hit.
+
+    test_endings.py JINK INSTANCE
+"""
+
+import signal
+
+import yaml
+
+from flight import CONFIG, Arena, check, interrupt, main, wait, wait_until
+
+CROSSING = CONFIG / "scenarios" / "crossing.yaml"
+
+
+def events(arena, name):
+    return [record["detail"] for record in arena.log("fly.jsonl", "event") if record["name"] == name]
+
+
+def flying(arena):
+    file = arena.folder / "fly.txt"
+    return lambda: file.exists() and "phase: flying" in file.read_text()
+
+
+def last_mode(arena):
+    return arena.log("fly.jsonl", "state")[-1]["mode"]
+
+
+def nobody_there(jink, instance):
+    with Arena(jink, instance) as arena:
+        fly = arena.fly(arena.mission("sitl"))
+        check(wait(fly, 60) == 3, "without an autopilot fly ends with exit status 3")
+        lines = [line for line in (arena.folder / "fly.txt").read_text().splitlines() if line.startswith("jink: ")]
+        check(len(lines) == 1 and "heartbeat" in lines[0] and "jink sim" in lines[0], f"one line says so: {lines}")
+
+
+def interrupted_in_flight(jink, instance):
+    with Arena(jink, instance) as arena:
+        sim = arena.sim(CROSSING)
+        fly = arena.fly(arena.mission("sitl"))
+        wait_until(flying(arena), 60, "flight")
+        fly.send_signal(signal.SIGINT)
+        check(wait(fly, 30) == 1, "interrupted in flight, fly ends with exit status 1")
+        check(arena.read("fly.json")["outcome"] == "aborted", "outcome aborted")
+        check(last_mode(arena) == "hold", "the autopilot was put in HOLD")
+        check(interrupt(sim) == 0, "and hit nothing")
+
+
+def tracks_stop(jink, instance):
+    with Arena(jink, instance) as arena:
+        sim = arena.sim(CROSSING, "--no-tracks")
+        writer = arena.start("tracks", [jink, "sim", CROSSING, "--no-vehicle", "--domain", arena.domain])
+        fly = arena.fly(arena.mission("sitl"))
+        wait_until(flying(arena), 60, "flight")
+        writer.send_signal(signal.SIGKILL)
+        check(wait(fly, 30) == 1, "when the tracks stop, fly ends with exit status 1")
+        summary = arena.read("fly.json")
+        check("tracks are stale" in summary["reason"], f"reason: {summary['reason']}")
+        check(any("stale" in detail for detail in events(arena, "hazard")), "the hazard is in the log")
+        check(last_mode(arena) == "hold", "the autopilot was put in HOLD")
+        interrupt(sim)
+
+
+def collision(jink, instance):
+    """A sphere appears on the vehicle: the simulator's motors stop, and fly says what it saw."""
+    with Arena(jink, instance) as arena:
+        scenario = yaml.safe_load(CROSSING.read_text())
+        scenario.update(name="ambush", sensing={"range": 0.001}, obstacles=[
+            {"radius": 3.0, "motion": {"type": "waypoints", "times": [0, 1.0, 1.5], "points": [[6, 0, 30], [6, 0, 30], [6, 0, 1.5]]}}])
+        scenario.pop("world")
+        file = arena.folder / "ambush.yaml"
+        file.write_text(yaml.safe_dump(scenario))
+        sim = arena.sim(file)
+        fly = arena.fly(arena.mission("sitl"))
+        check(wait(fly, 90) == 1, "hit, fly ends with exit status 1")
+        check("disarmed in flight" in arena.read("fly.json")["reason"], f"reason: {arena.read('fly.json')['reason']}")
+        check(interrupt(sim) == 1, "sim ends with exit status 1")
+        truth = arena.read("sim.json")
+        check(truth["outcome"] == "collision" and truth["min_clearance"] < 0.0, f"sim: {truth['outcome']}, {truth['reason']}")
+
+
+def test(jink, instance):
+    for case in (nobody_there, interrupted_in_flight, tracks_stop, collision):
+        print(f"== {case.__name__}", flush=True)
+        case(jink, int(instance))
+
+
+main(test)
