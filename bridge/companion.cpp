@@ -88,7 +88,12 @@ void Companion::take_tracks(double now) {
 }
 
 void Companion::take_plan(double now) {
-  std::optional<PlanResult> result = parts_.planner.poll(now);
+  std::optional<PlanResult> result;
+  try {
+    if (!planner_failed_) result = parts_.planner.poll(now);
+  } catch (const std::exception& failure) {
+    planner_failed(now, failure);
+  }
   if (!result) return;
   ++summary_.plans;
   summary_.plan_ms.push_back(result->ms);
@@ -113,6 +118,14 @@ void Companion::take_plan(double now) {
   }
 }
 
+// The vehicle is not left with the last setpoint because planning broke down: it brakes and gets HOLD.
+void Companion::planner_failed(double now, const std::exception& failure) {
+  planner_failed_ = true;
+  const std::string reason = std::string("the planner failed: ") + failure.what();
+  event(now, "planner_failed", failure.what());
+  supervisor_.stop(now, Outcome::kAborted, reason);
+}
+
 planner::Box Companion::volume(const Vec3& start) const {
   planner::Box box = mission_.geofence;
   box.min.z() = std::max(box.min.z(), mission_.min_height);
@@ -124,7 +137,7 @@ planner::Box Companion::volume(const Vec3& start) const {
 
 void Companion::start_plan(double now) {
   const config::CompanionSettings& companion = settings_.companion;
-  if (parts_.planner.busy() || (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz)) return;
+  if (planner_failed_ || parts_.planner.busy() || (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz)) return;
   last_plan_begun_ = now;
   PlanJob job;
   job.number = summary_.plans;
@@ -139,7 +152,8 @@ void Companion::start_plan(double now) {
   planner::PathRequest& request = job.request;
   request.position = lost ? Vec3(state_.position + (job.start - state_.position_stamp) * state_.velocity) : reference.position;
   request.velocity = lost ? state_.velocity : reference.velocity;
-  if (lost) event(now, "reference_lost", "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
+  if (lost && !announced_lost_) event(now, "reference_lost", "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
+  announced_lost_ = lost;
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
   request.volume = volume(request.position);
@@ -152,7 +166,11 @@ void Companion::start_plan(double now) {
     // A plan to another waypoint is no plan to keep.
     if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
   }
-  parts_.planner.start(std::move(job));
+  try {
+    parts_.planner.start(std::move(job));
+  } catch (const std::exception& failure) {
+    planner_failed(now, failure);
+  }
 }
 
 void Companion::move(double now, const Decision& decision) {
@@ -164,16 +182,19 @@ void Companion::move(double now, const Decision& decision) {
         takeoff_point_ = state_.position;
         takeoff_point_.z() = std::max(state_.position.z() + mission_.takeoff_height, mission_.min_height);
         stream_.hold(takeoff_point_, now);
+      } else if (stream_.braking()) {  // a hazard of the climb has passed
+        stream_.hold(takeoff_point_, now);
       }
       break;
     case Motion::kStay:
-      if (!stream_.active()) stream_.hold(state_.position, now);
+      // Until OFFBOARD is confirmed the vehicle may be moving: it is to stop where it is then, not to come back.
+      stream_.hold(state_.position, now);
       break;
     case Motion::kFollow:
       if (supervisor_.phase() == Phase::kFlying) start_plan(now);
       break;
     case Motion::kBrake:
-      stream_.brake(now);
+      brake(now);
       // While a hazard lasts the planner goes on: when it has passed there is a plan to follow.
       if (supervisor_.phase() == Phase::kFlying) start_plan(now);
       break;
@@ -181,14 +202,31 @@ void Companion::move(double now, const Decision& decision) {
   if (!stream_.active()) stream_.hold(state_.position, now);
   const Setpoint setpoint = stream_.setpoint(now, heading(now));
   if (!parts_.link.send(setpoint)) {
-    event(now, "send_failed", "a setpoint could not be sent");
+    if (!announced_send_failure_) event(now, "send_failed", "setpoints cannot be sent");
+    announced_send_failure_ = true;
     return;
   }
+  if (announced_send_failure_) event(now, "send_works", "setpoints can be sent again");
+  announced_send_failure_ = false;
   for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
   if (unsent_track_ && now + settings_.companion.setpoint_lead >= unsent_from_) {
     summary_.track_to_setpoint_ms.push_back(1e3 * (now - *unsent_track_));
     unsent_track_.reset();
   }
+}
+
+// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it was
+// lost, and the vehicle's position is known.
+void Companion::brake(double now) {
+  if (stream_.braking()) return;
+  const bool known = state_.position_stamp >= 0.0 && now - state_.position_stamp <= settings_.companion.stale_state;
+  const bool says_nothing = !stream_.active() || stream_.plan(now).empty() ||
+                            (stream_.reference(state_.position_stamp).position - state_.position).norm() > kLostReference;
+  if (!known || !says_nothing) {
+    stream_.brake(now);
+    return;
+  }
+  stream_.brake(now, planner::TimedPoint{now, state_.position, state_.velocity, Vec3::Zero()});
 }
 
 // Towards the waypoint, turning at a bounded rate from where the vehicle looks now.
@@ -266,6 +304,14 @@ void Companion::announce(double now) {
   if (supervisor_.hazard() != announced_hazard_) {
     announced_hazard_ = supervisor_.hazard();
     event(now, announced_hazard_.empty() ? "hazard_over" : "hazard", announced_hazard_);
+  }
+  if (table_.clock_offsets() > 0 && !announced_offset_) {
+    announced_offset_ = true;
+    event(now, "tracks_clock", "a track writer's stamps are not this computer's time: only changes of its delay are known");
+  }
+  if (table_.late_messages() != announced_late_ && std::floor(now) != std::floor(last_step_)) {  // once a second
+    announced_late_ = table_.late_messages();
+    event(now, "tracks_late", std::to_string(announced_late_) + " track messages came too late to be used");
   }
   const TrackSourceStatus tracks = parts_.tracks.status();
   summary_.dropped_tracks = tracks.dropped_tracks;

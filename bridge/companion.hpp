@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -67,7 +68,8 @@ class Companion {
  public:
   Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts);
 
-  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over.
+  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over. What
+  /// the planner throws ends the flight in HOLD, as Ctrl-C does, with its words as the reason.
   bool step(double now);
   /// Ends the flight as Ctrl-C does: brake, then HOLD.
   void interrupt(double now) { supervisor_.stop(now, Outcome::kAborted, "interrupted"); }
@@ -82,6 +84,8 @@ class Companion {
   void take_plan(double now);
   void start_plan(double now);
   void move(double now, const Decision& decision);
+  void brake(double now);
+  void planner_failed(double now, const std::exception& failure);
   void measure(double now);
   void announce(double now);
   void next_waypoint(double now);
@@ -106,6 +110,10 @@ class Companion {
   double yaw_ = 0.0;
   bool yaw_known_ = false;
   double last_step_ = -1.0;
+  bool planner_failed_ = false;
+  bool announced_lost_ = false, announced_send_failure_ = false;
+  std::uint64_t announced_late_ = 0;
+  bool announced_offset_ = false;
   Phase announced_phase_ = Phase::kDone;
   std::string announced_waiting_, announced_hazard_;
   TrackSourceStatus announced_tracks_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kBrakeStep = 0.05;  // s, between points of a stop
 constexpr double kAtRest = 0.02;     // m/s
+constexpr double kHistory = 1.0;     // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;  // m/s, below which a lag says little about drag
 constexpr double kLearningRate = 0.4;   // 1/s² of drag for each metre of lag
 constexpr double kMostDrag = 2.0;       // 1/s
@@ -26,7 +27,12 @@ void SetpointStream::hold(const Vec3& position, double now) {
 
 void SetpointStream::follow(planner::TimedPath path) {
   assert(!path.empty());
-  if (!next_.empty()) current_ = std::move(next_);
+  if (!next_.empty()) {
+    // The one that waits for its start, or was followed till now, goes on where the present one ends.
+    const double joint = next_.front().t;
+    std::erase_if(current_, [&](const planner::TimedPoint& p) { return p.t >= joint || p.t < joint - kHistory; });
+    current_.insert(current_.end(), next_.begin(), next_.end());
+  }
   next_ = std::move(path);
   if (current_.empty()) current_ = next_;
   is_plan_ = true;

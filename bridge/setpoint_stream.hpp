@@ -24,6 +24,7 @@ class SetpointStream {
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
   /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed before.
+  /// Precondition: not empty.
   void follow(planner::TimedPath path);
   /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity, then
   /// holds there. Does nothing while a brake is on.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/supervisor.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 namespace jink::bridge {
@@ -10,6 +10,8 @@ namespace {
 constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
 constexpr double kAskAgain = 1.5;          // s; a confirming heartbeat takes up to one
 constexpr int kMostTries = 5;
+constexpr double kSettling = 0.3;          // s, within which a request acts; PX4 takes up to 15 ms
+constexpr double kReadyAgain = 10.0;       // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;    // s
 constexpr double kLandingTimeout = 90.0;  // s
 constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
@@ -62,17 +64,25 @@ void Supervisor::finish(Outcome outcome, std::string reason) {
 // Asks once, and again where the heartbeat shows no effect. Nothing when it was asked too often or just now.
 std::optional<Command> Supervisor::ask(Command command, double now) {
   if (asked_for_ == command && now - asked_ < kAskAgain) return std::nullopt;
-  if (asked_for_ != command) tries_ = 0;
+  if (asked_for_ != command) {
+    tries_ = 0;
+    refusal_.clear();  // of another request
+  }
   ++tries_;
   asked_for_ = command;
   asked_ = now;
   return command;
 }
 
+// Asked often enough, and the last request has had its time too.
+bool Supervisor::exhausted(double now) const { return tries_ >= kMostTries && now - asked_ >= kAskAgain; }
+
 void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   if (phase_ == Phase::kDone || phase_ == Phase::kStopping || phase_ == Phase::kHandover) return;
   reason_ = std::move(reason);
   pending_outcome_ = outcome;
+  waiting_for_.clear();
+  if (phase_ == Phase::kEngaging && asked_for_) unsettled_until_ = asked_ + kSettling;
   const bool never_flew = phase_ == Phase::kWaiting;
   if (never_flew) {
     finish(outcome, {});
@@ -92,7 +102,7 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
   if (taken_over(state)) return {};
   switch (phase_) {
     case Phase::kWaiting: return wait(now, state, picture);
-    case Phase::kEngaging: return engage(now, state);
+    case Phase::kEngaging: return engage(now, state, picture);
     case Phase::kClimbing: return climb(now, state, picture);
     case Phase::kFlying: return fly(now, state, picture);
     case Phase::kStopping: {
@@ -111,76 +121,108 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
 
 // True, and the flight is over, where somebody else changed the mode or the motors went off.
 bool Supervisor::taken_over(const VehicleState& state) {
-  const bool ours = phase_ == Phase::kClimbing || phase_ == Phase::kFlying || phase_ == Phase::kStopping;
-  if (!ours || !offboard_seen_) return false;
-  if (!state.armed) {
-    finish(Outcome::kAborted, "the autopilot disarmed in flight");
-    return true;
+  const bool asked = phase_ == Phase::kEngaging || phase_ == Phase::kStopping || phase_ == Phase::kHandover;
+  const bool ours = phase_ == Phase::kEngaging || phase_ == Phase::kClimbing || phase_ == Phase::kFlying ||
+                    phase_ == Phase::kStopping;
+  if (asked && state.mode == FlightMode::kOffboard) offboard_seen_ = true;
+  std::string what;
+  if (ours && flight_began_ >= 0.0 && !state.armed) {
+    what = "the autopilot disarmed in flight";
+  } else if ((ours && offboard_seen_ && state.mode != FlightMode::kOffboard) ||
+             (asked && !offboard_seen_ && state.mode != mode_before_)) {
+    what = "the mode was changed to " + std::string(to_string(state.mode)) + " by pilot or autopilot";
+  } else {
+    return false;
   }
-  if (state.mode == FlightMode::kOffboard) return false;
-  finish(Outcome::kAborted, "the mode was changed to " + std::string(to_string(state.mode)) + " by pilot or autopilot");
+  if (!reason_.empty()) reason_ += "; then " + what;
+  finish(pending_outcome_ == Outcome::kNone ? Outcome::kAborted : pending_outcome_, what);
   return true;
 }
 
-Decision Supervisor::wait(double now, const VehicleState& state, const FlightPicture& picture) {
+// What a flight cannot begin without, into waiting_for_; empty: nothing.
+void Supervisor::find_missing(double now, const VehicleState& state, const FlightPicture& picture) {
   const bool autopilot = state.heartbeat_stamp >= 0.0 && now - state.heartbeat_stamp < kHeartbeatTimeout;
   const bool tracks =
       !mission_.tracks.required || (picture.newest_tracks >= 0.0 && now - picture.newest_tracks < mission_.tracks.timeout_s);
   const bool position = state.position_stamp >= 0.0 && now - state.position_stamp < settings_.stale_state;
   const bool ready = position && state.local_position_ok && (state.armed || state.armable);
   waiting_for_.clear();
+  absent_ = MissingPeer::kNone;
   if (!autopilot) {
     waiting_for_ = "an autopilot's heartbeat on " + mission_.connection;
+    absent_ = MissingPeer::kAutopilot;
   } else if (!tracks) {
     waiting_for_ = "obstacle tracks on DDS domain " + std::to_string(mission_.dds_domain);
+    absent_ = MissingPeer::kTracks;
   } else if (!ready) {
     waiting_for_ = "the autopilot to be ready: " + (state.health.empty() ? std::string("local position") : state.health);
-  } else {
+  }
+}
+
+Decision Supervisor::wait(double now, const VehicleState& state, const FlightPicture& picture) {
+  find_missing(now, state, picture);
+  if (waiting_for_.empty()) {
+    mode_before_ = state.mode;
     enter(Phase::kEngaging, now);
     return {Motion::kStay, {}};
   }
-  const double waited = now - began_;
-  if (!autopilot || !tracks) {
-    if (waited > settings_.peer_timeout) {
-      missing_peer_ = autopilot ? MissingPeer::kTracks : MissingPeer::kAutopilot;
-      finish(Outcome::kAborted, "waited in vain for " + waiting_for_);
-    }
-  } else if (waited > settings_.health_timeout) {
+  const bool peer = absent_ != MissingPeer::kNone;
+  if (now - began_ > (peer ? settings_.peer_timeout : settings_.health_timeout)) {
+    missing_peer_ = absent_;
     finish(Outcome::kAborted, "waited in vain for " + waiting_for_);
   }
   return {};
 }
 
-Decision Supervisor::engage(double now, const VehicleState& state) {
+Decision Supervisor::engage(double now, const VehicleState& state, const FlightPicture& picture) {
   Decision decision{state.in_air ? Motion::kStay : Motion::kTakeoffPoint, {}};
-  if (tries_ > kMostTries) {
-    finish(Outcome::kAborted, refusal_.empty() ? "the autopilot did not answer " + std::string(to_string(*asked_for_)) : refusal_);
-    return {};
+  if (state.mode == FlightMode::kOffboard && state.armed) {
+    waiting_for_.clear();
+    flight_began_ = now;
+    enter(state.in_air ? Phase::kFlying : Phase::kClimbing, now);
+    return decision;
+  }
+  if (exhausted(now)) {
+    stop(now, Outcome::kAborted,
+         refusal_.empty() ? "the autopilot did not follow the request: " + std::string(to_string(*asked_for_)) : refusal_);
+    return decision;
   }
   if (state.mode != FlightMode::kOffboard) {
     decision.request = ask(Command::kOffboard, now);
-  } else if (!state.armed) {
-    decision.request = ask(Command::kArm, now);
-  } else {
-    offboard_seen_ = true;
-    flight_began_ = now;
-    enter(state.in_air ? Phase::kFlying : Phase::kClimbing, now);
+    return decision;
   }
+  // What was there when it was waited for may be gone again.
+  find_missing(now, state, picture);
+  if (waiting_for_.empty()) {
+    not_ready_since_ = -1.0;
+    decision.request = ask(Command::kArm, now);
+    return decision;
+  }
+  if (not_ready_since_ < 0.0) not_ready_since_ = now;
+  if (now - not_ready_since_ > kReadyAgain) stop(now, Outcome::kAborted, "waited in vain for " + waiting_for_);
   return decision;
 }
 
 Decision Supervisor::climb(double now, const VehicleState& state, const FlightPicture& picture) {
-  const bool stale = now - state.position_stamp > settings_.stale_state;
-  if (!stale && state.in_air && picture.at_takeoff_height) {
+  find_hazard(now, state, picture);
+  if (!hazard_.empty()) return fall_back(now);
+  hazard_since_ = -1.0;
+  if (state.in_air && picture.at_takeoff_height) {
     enter(Phase::kFlying, now);
     return {Motion::kFollow, {}};
   }
-  if (stale) {
-    stop(now, Outcome::kAborted, "the vehicle's position is stale during take-off");
-  } else if (now - entered_ > kClimbTimeout) {
+  if (now - entered_ > kClimbTimeout) {
     stop(now, Outcome::kAborted, "the take-off height was not reached");
+    return {Motion::kBrake, {}};
   }
   return {Motion::kTakeoffPoint, {}};
+}
+
+// Brakes while a hazard lasts, and ends the flight where it does not pass.
+Decision Supervisor::fall_back(double now) {
+  if (hazard_since_ < 0.0) hazard_since_ = now;
+  if (now - hazard_since_ > settings_.give_up) stop(now, Outcome::kAborted, hazard_);
+  return {Motion::kBrake, {}};
 }
 
 void Supervisor::find_hazard(double now, const VehicleState& state, const FlightPicture& picture) {
@@ -191,13 +233,15 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
     hazard_ = "the autopilot's heartbeat is missing";
   } else if (mission_.tracks.required && now - picture.newest_tracks > mission_.tracks.timeout_s) {
     hazard_ = "the obstacle tracks are stale";
-  } else if (now - std::max(picture.newest_plan, entered_) > settings_.stale_plan) {
+  } else if (phase_ == Phase::kFlying && now - std::max(picture.newest_plan, entered_) > settings_.stale_plan) {
     hazard_ = "the planner is late";
   }
 }
 
 Decision Supervisor::fly(double now, const VehicleState& state, const FlightPicture& picture) {
-  if (picture.at_target) {
+  // Where the vehicle was is no proof of where it is.
+  if (picture.at_target && now - state.position_stamp <= settings_.stale_state) {
+    hazard_.clear();
     pending_outcome_ = Outcome::kReached;
     reason_ = "target reached";
     enter(mission_.arrival == config::Arrival::kLand ? Phase::kLanding : Phase::kHandover, now);
@@ -212,24 +256,32 @@ Decision Supervisor::fly(double now, const VehicleState& state, const FlightPict
     hazard_since_ = -1.0;
     return {Motion::kFollow, {}};
   }
-  if (hazard_since_ < 0.0) hazard_since_ = now;
-  if (now - hazard_since_ > settings_.give_up) stop(now, Outcome::kAborted, hazard_);
-  return {Motion::kBrake, {}};
+  return fall_back(now);
 }
 
 Decision Supervisor::hand_over(double now, const VehicleState& state) {
-  // HOLD is there; or somebody chose another mode, and that stands.
-  if (state.mode != FlightMode::kOffboard || (!state.armed && !state.in_air)) {
+  const bool offboard = state.mode == FlightMode::kOffboard;
+  const bool grounded = !state.armed && !state.in_air;
+  const Motion motion = pending_outcome_ == Outcome::kReached ? Motion::kFollow : Motion::kBrake;
+  // Stopped while OFFBOARD or arming was asked for: whether that acted, only a newer heartbeat tells.
+  if (state.heartbeat_stamp <= unsettled_until_ && (offboard ? grounded : !offboard_seen_)) {
+    if (now - entered_ <= kHeartbeatTimeout) return {motion, {}};
+    reason_ += "; the autopilot's heartbeat is missing, whether it is in OFFBOARD is not known";
     finish(pending_outcome_, {});
     return {};
   }
-  if (tries_ > kMostTries) {
+  // HOLD is there; or somebody chose another mode, and that stands.
+  if (!offboard || grounded) {
+    finish(pending_outcome_, {});
+    return {};
+  }
+  if (exhausted(now)) {
     finish(pending_outcome_ == Outcome::kReached ? Outcome::kAborted : pending_outcome_, {});
     reason_ += "; HOLD was never confirmed, the autopilot's own failsafe has the vehicle";
     return {};
   }
   // The stream goes on until HOLD is confirmed, so that the vehicle is never without an order.
-  return {pending_outcome_ == Outcome::kReached ? Motion::kFollow : Motion::kBrake, ask(Command::kHold, now)};
+  return {motion, ask(Command::kHold, now)};
 }
 
 Decision Supervisor::land(double now, const VehicleState& state) {
@@ -249,10 +301,11 @@ Decision Supervisor::land(double now, const VehicleState& state) {
     }
     return {};
   }
-  if (tries_ > kMostTries) {
+  if (exhausted(now)) {
     pending_outcome_ = Outcome::kAborted;
-    reason_ = "target reached, but the autopilot does not land";
+    reason_ = "target reached, but the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_);
     enter(Phase::kHandover, now);
+    return {Motion::kBrake, ask(Command::kHold, now)};
   }
   return {Motion::kFollow, ask(Command::kLand, now)};
 }

@@ -85,11 +85,14 @@ class Supervisor {
   void finish(Outcome outcome, std::string reason);
   std::optional<Command> ask(Command command, double now);
   Decision wait(double now, const VehicleState& state, const FlightPicture& picture);
-  Decision engage(double now, const VehicleState& state);
+  Decision engage(double now, const VehicleState& state, const FlightPicture& picture);
   Decision climb(double now, const VehicleState& state, const FlightPicture& picture);
   Decision fly(double now, const VehicleState& state, const FlightPicture& picture);
   Decision hand_over(double now, const VehicleState& state);
   Decision land(double now, const VehicleState& state);
+  Decision fall_back(double now);
+  [[nodiscard]] bool exhausted(double now) const;
+  void find_missing(double now, const VehicleState& state, const FlightPicture& picture);
   void find_hazard(double now, const VehicleState& state, const FlightPicture& picture);
   bool taken_over(const VehicleState& state);
 
@@ -103,7 +106,11 @@ class Supervisor {
   double asked_ = -1.0;    // the newest request
   std::optional<Command> asked_for_;
   int tries_ = 0;
+  FlightMode mode_before_ = FlightMode::kUnknown;  // when OFFBOARD was first asked for
   bool offboard_seen_ = false;  // the heartbeat confirmed OFFBOARD since we asked
+  double unsettled_until_ = -1.0;  // a request may act until then: an older heartbeat says nothing of it
+  double not_ready_since_ = -1.0;  // while engaging
+  MissingPeer absent_ = MissingPeer::kNone;  // whom waiting_for_ is about
   Outcome outcome_ = Outcome::kNone;
   Outcome pending_outcome_ = Outcome::kNone;  // once the hand-over is through
   std::string reason_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,9 @@ class TrackTable {
 
   /// Takes in one message. The measurement's instant is the reception less the delay read from the stamp. A stamp that lies
   /// in the future or more than kLongestDelay back tells of a clock that is off: then the writer's smallest stamp age so far
-  /// stands for the offset and what exceeds it for the delay.
+  /// stands for the offset and what exceeds it for the delay. A message whose delay exceeds kLongestDelay is left out, as
+  /// if it had not come; where that lasts for kLongestDelay with stamps that advance, a clock was set and its offset is
+  /// learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
   void ingest(const TrackMessage& message);
 
   /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity. Their
@@ -33,6 +36,9 @@ class TrackTable {
   /// Messages whose stamp could not be believed.
   [[nodiscard]] std::uint64_t clock_offsets() const { return clock_offsets_; }
 
+  /// Messages left out because they came too late.
+  [[nodiscard]] std::uint64_t late_messages() const { return late_messages_; }
+
   static constexpr double kLongestDelay = 1.0;  ///< s, from measurement to reception
 
  private:
@@ -41,12 +47,22 @@ class TrackTable {
     double measured = 0.0;  // companion's clock
     double seen = 0.0;      // reception of the last message that held it
   };
+  struct Writer {
+    double smallest_age = 0.0;  // of its stamps
+    double stamp = 0.0;         // the newest message's, to within a constant
+    double received = 0.0;
+    double late_since = -1.0;
+    bool advances = false;
+  };
+  std::optional<double> delay_of(const TrackMessage& message);
+
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
 
   double coast_s_;
   double newest_message_ = -1.0;
   std::uint64_t clock_offsets_ = 0;
-  std::map<std::uint64_t, double> smallest_age_;  // of the stamps, by writer
+  std::uint64_t late_messages_ = 0;
+  std::map<std::uint64_t, Writer> writers_;
   std::map<Key, Entry> entries_;
 };
 

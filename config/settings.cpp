@@ -184,8 +184,7 @@ std::optional<Conflict> find_conflict(const Settings& s) {
 }
 
 Settings read_file(const std::filesystem::path& file) {
-  const Map root(read_document(file), {"format", "optimizer", "paper", "horizon", "companion"});
-  root.require_format("jink-planner/1");
+  const Map root(read_document(file), {"format", "optimizer", "paper", "horizon", "companion"}, "jink-planner/1");
   Settings settings;
   std::vector<std::pair<std::string, Value>> values;  // for the errors between keys
   for_each_section(settings, [&](std::string_view name, auto& section, const auto& fields) {

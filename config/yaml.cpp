@@ -169,11 +169,17 @@ std::size_t Value::choice(std::span<const std::string_view> names) const {
   fail("is not one of " + join(names) + (near.empty() ? "" : "; did you mean '" + std::string(near) + "'?"));
 }
 
-Map::Map(const Value& value, std::vector<std::string_view> keys) : value_(value), keys_(std::move(keys)) {
+Map::Map(const Value& value, std::vector<std::string_view> keys, std::string_view format)
+    : value_(value), keys_(std::move(keys)) {
   if (!value_.node_.IsMap()) {
     const std::string expected = "expected a map with the keys " + join(keys_);
     if (!value_.path_.empty()) value_.fail("is " + kind_of(value_.node_) + "; " + expected);
     value_.fail_at(value_.line_, "", "the file holds " + kind_of(value_.node_) + "; " + expected);
+  }
+  for (const auto& item : value_.node_) {
+    if (format.empty() || !item.first.IsScalar() || item.first.Scalar() != "format") continue;
+    const Value stated(item.second, value_.source_, value_.path_of("format"), line_of(item.first, value_.line_));
+    if (stated.text() != format) stated.fail("is not '" + std::string(format) + "'");
   }
   entries_.reserve(value_.node_.size());
   for (const auto& item : value_.node_) {
@@ -197,6 +203,7 @@ Map::Map(const Value& value, std::vector<std::string_view> keys) : value_(value)
     }
     entries_.push_back({key, Value(item.second, value_.source_, path, line)});
   }
+  if (!format.empty()) (void)at("format", "'" + std::string(format) + "'");
 }
 
 std::optional<Value> Map::find(std::string_view key) const {
@@ -235,11 +242,6 @@ planner::Vec3 Map::vec3(std::string_view key, const Range& range) const {
 planner::Vec3 Map::vec3_or(std::string_view key, const Range& range, const planner::Vec3& fallback) const {
   const std::optional<Value> value = find(key);
   return value ? value->vec3(range) : fallback;
-}
-
-void Map::require_format(std::string_view format) const {
-  const Value value = at("format", "'" + std::string(format) + "'");
-  if (value.text() != format) value.fail("is not '" + std::string(format) + "'");
 }
 
 planner::Box read_box(const Value& value, const Range& range) {

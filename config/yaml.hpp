@@ -61,8 +61,10 @@ class Value {
 /// key is reported as such before the key that it was meant to be is reported missing.
 class Map {
  public:
-  /// Throws on another type, an unknown key (with the known ones and the nearest of them) and a key given twice.
-  Map(const Value& value, std::vector<std::string_view> keys);
+  /// Throws on another type, an unknown key (with the known ones and the nearest of them) and a key given twice. Where
+  /// `format` is given, that is what the key of this name must say; it is looked at before all others, since a file of
+  /// another kind has other keys.
+  Map(const Value& value, std::vector<std::string_view> keys, std::string_view format = {});
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key).has_value(); }
   [[nodiscard]] std::optional<Value> find(std::string_view key) const;
@@ -75,8 +77,6 @@ class Map {
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] planner::Vec3 vec3(std::string_view key, const Range& range) const;
   [[nodiscard]] planner::Vec3 vec3_or(std::string_view key, const Range& range, const planner::Vec3& fallback) const;
-  /// The format line that every file but the vehicles' begins with.
-  void require_format(std::string_view format) const;
   /// The map itself, for errors that concern several of its keys.
   [[nodiscard]] const Value& value() const { return value_; }
 

@@ -64,9 +64,10 @@ class Teller final : public bridge::FlightObserver {
 
 nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options, const config::Settings& settings) {
   const auto vector = [](const planner::Vec3& v) { return nlohmann::ordered_json::array({v.x(), v.y(), v.z()}); };
+  const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
   return {{"mission", mission.name}, {"seed", options.common.seed}, {"target", vector(mission.waypoints.back())},
           {"vehicle", {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
-          {"world", {{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}}},
+          {"world", bounded ? nlohmann::ordered_json{{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}} : nullptr},
           {"parameters", parameters_of(settings)}};
 }
 
@@ -100,8 +101,8 @@ int run(const FlyOptions& options) {
   std::vector<bridge::FlightObserver*> observers{&teller};
   std::unique_ptr<FlightLog> log;
   std::unique_ptr<bridge::MavsdkLink> link;
+  if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
   try {
-    if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
     link = std::make_unique<bridge::MavsdkLink>(mission.connection, clock);
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());

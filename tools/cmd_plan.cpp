@@ -55,6 +55,10 @@ void apply(const PlanOptions& options, Knobs k) {
   if (options.population > 0) k.population = options.population;
   if (options.iterations > 0) k.iterations = options.iterations;
   if (options.waypoints > 0) k.waypoints = options.waypoints;
+  const auto [fewest, most] = options.mode == "paper" ? std::pair{2, 1000} : std::pair{1, 20};
+  if (k.waypoints < fewest || k.waypoints > most) {
+    throw UsageError(fmt::format("--waypoints: Value {} not in range {} to {} in {} mode", k.waypoints, fewest, most, options.mode));
+  }
   if (k.population < k.slaves) {
     throw UsageError(fmt::format("--population: {} leaves one of {} slaves without a universe; it is to be {} or more",
                                  k.population, k.slaves, k.slaves));

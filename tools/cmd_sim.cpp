@@ -213,13 +213,7 @@ int run(const SimOptions& options) {
   const config::Scenario scenario = config::load_scenario(options.scenario);
   catch_signals();
   std::unique_ptr<FlightLog> log;
-  if (!options.log.empty()) {
-    try {
-      log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
-    } catch (const std::runtime_error& error) {
-      throw UsageError(std::string("--log: ") + error.what());
-    }
-  }
+  if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
   Simulator simulator(options, scenario, printer, log.get());
   printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
                            options.no_tracks ? ", not told" : fmt::format(" as {} on DDS domain {}", bridge::kTracksTopic, options.domain),

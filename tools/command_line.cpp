@@ -23,7 +23,12 @@ constexpr std::int64_t kMostThreads = 256;
 }  // namespace
 
 void CommonOptions::add_to(CLI::App& app) {
-  app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")->capture_default_str();
+  app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
+      ->check([](const std::string& text) {
+        const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        return digits ? std::string() : "Value " + text + " is not a whole number from 0 to 18446744073709551615";
+      }, "")
+      ->capture_default_str();
   app.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
       ->check(CLI::Range(std::int64_t{1}, kMostThreads));
   app.add_option("--config", config, "planner parameters (default: config/planner.yaml)");

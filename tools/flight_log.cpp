@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "tools/command_line.hpp"
+
 namespace jink::tools {
 namespace {
 
@@ -13,7 +15,7 @@ Json vector(const planner::Vec3& v) { return Json::array({v.x(), v.y(), v.z()});
 }  // namespace
 
 FlightLog::FlightLog(const std::filesystem::path& file, Json header) : file_(file), out_(file) {
-  if (!out_) throw std::runtime_error(file.string() + ": cannot write the flight log");
+  if (!out_) throw UsageError("--log: '" + file.string() + "' cannot be written");
   Json first{{"type", "header"}, {"format", "jink-log/1"}, {"version", JINK_VERSION}};
   first.update(header);
   write(first);

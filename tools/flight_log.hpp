@@ -24,7 +24,7 @@ namespace jink::tools {
 class FlightLog final : public bridge::FlightObserver, public sim::TruthObserver {
  public:
   /// Creates the file and writes the header, to which `format`, `type` and `version` are added. Throws
-  /// std::runtime_error naming the file where it cannot be written.
+  /// UsageError naming the file where it cannot be written.
   FlightLog(const std::filesystem::path& file, nlohmann::ordered_json header);
 
   void on_state(double t, const bridge::VehicleState& state) override;

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The commands as contracts has them: exit codes, one-line errors, JSON keys, the same bits at any thread count.
+
+    test_command_line.py JINK
+"""
+
+import json
+import math
+import pathlib
+import subprocess
+import tempfile
+
+import yaml
+
+from flight import CONFIG, check, main
+
+SCENARIOS = CONFIG / "scenarios"
+CROSSING = SCENARIOS / "crossing.yaml"
+PAPER = [f"table2-{i}" for i in range(1, 6)] + [f"table12-{i}" for i in range(1, 4)]
+PLAN_KEYS = ["format", "scenario", "mode", "algorithm", "seed", "threads", "slaves", "sharing", "population", "iterations",
+             "outcome", "path", "path_length", "straight_length", "slr", "flight_time_s", "min_clearance", "evaluations",
+             "planning_time_s", "front"]
+FLIGHT_KEYS = ["format", "scenario", "seed", "outcome", "reason", "flight_time_s", "path_length", "straight_length", "slr",
+               "min_clearance", "max_speed", "plans", "deadline_misses", "plan_ms", "track_to_setpoint_ms"]
+# Arguments, and what the one line on stderr has to hold.
+BAD_USAGE = [
+    ([], ["subcommand is required"]),
+    (["bogus"], ["bogus", "plan, replay, sim, fly"]),
+    (["plan"], ["SCENARIO"]),
+    (["plan", "no-such-file.yaml"], ["no-such-file.yaml"]),
+    (["plan", CROSSING, "--mode", "wild"], ["--mode", "wild", "paper", "horizon"]),
+    (["plan", CROSSING, "--algorithm", "magic"], ["--algorithm", "magic", "pmomvo"]),
+    (["plan", CROSSING, "--threads", "0"], ["--threads", "0", "1 to 256"]),
+    (["plan", CROSSING, "--slaves", "65"], ["--slaves", "65", "1 to 64"]),
+    (["plan", CROSSING, "--population", "3", "--slaves", "6"], ["--population", "3", "6 or more"]),
+    (["plan", CROSSING, "--waypoints", "1", "--mode", "paper"], ["--waypoints", "1", "2 to 1000"]),
+    (["plan", CROSSING, "--seed", "-1"], ["--seed", "-1"]),
+    (["plan", CROSSING, "--set", "horizon.margn=1"], ["horizon.margn", "horizon.margin"]),
+    (["plan", CROSSING, "--set", "horizon.margin=-1"], ["horizon.margin", "-1", "[0, 100]"]),
+    (["plan", CROSSING, "--json", "/no/such/folder/x.json"], ["--json", "/no/such/folder/x.json"]),
+    (["replay", CROSSING, "--log", "/no/such/folder/x.jsonl"], ["--log", "/no/such/folder/x.jsonl"]),
+    (["replay", CROSSING, "--report", "x.html"], ["--report", "--log"]),
+    (["sim", CROSSING, "--speed", "100"], ["--speed", "100", "20"]),
+    (["sim", CONFIG / "missions" / "sitl.yaml"], ["sitl.yaml:", "format", "jink-mission/1", "jink-scenario/1"]),
+    (["fly", CROSSING], ["crossing.yaml:", "format", "jink-scenario/1", "jink-mission/1"]),
+    (["report", "no-such-log.jsonl"], ["no-such-log.jsonl"]),
+]
+
+
+class Jink:
+    def __init__(self, program):
+        self.program = program
+
+    def run(self, *arguments, seconds=120):
+        return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, timeout=seconds)
+
+    def summary(self, *arguments, status=0):
+        """The summary on stdout, which holds nothing else."""
+        done = self.run(*arguments, "--json", "-")
+        check(done.returncode == status, f"jink {arguments[0]} {pathlib.Path(arguments[1]).stem} {' '.join(map(str, arguments[2:]))}: exit status {status}")
+        return json.loads(done.stdout)
+
+
+def bad_usage(jink):
+    for arguments, parts in BAD_USAGE:
+        done = jink.run(*arguments)
+        lines = done.stderr.strip().splitlines()
+        said = done.returncode == 2 and len(lines) == 1 and not done.stdout and all(part in lines[0] for part in parts)
+        check(said, f"status {done.returncode}: {done.stderr.strip()}")
+
+
+def bad_values(jink, folder):
+    """A wrong value in a scenario is named with file, line, key, value and range."""
+    text = CROSSING.read_text()
+    file = folder / "wrong.yaml"
+    file.write_text(text.replace("\nstart:", "\nstrat:", 1))
+    done = jink.run("plan", file)
+    check(done.returncode == 2 and "strat" in done.stderr and "start" in done.stderr, done.stderr.strip())
+    scenario = yaml.safe_load(text)
+    scenario["obstacles"][0]["radius"] = -0.5
+    scenario["obstacles"][0].pop("box", None)
+    file.write_text(yaml.safe_dump(scenario))
+    done = jink.run("plan", file)
+    parts = ["wrong.yaml:", "obstacles[0].radius", "-0.5", "(0, 1000]"]
+    check(done.returncode == 2 and all(part in done.stderr for part in parts), done.stderr.strip())
+
+
+def help_reads(jink):
+    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"]):
+        done = jink.run(*command, "--help")
+        check(done.returncode == 0 and "Usage: jink" in done.stdout and not done.stderr, f"jink {' '.join(command)} --help")
+
+
+def distance_to_obstacle(obstacle, t, point):
+    position = [obstacle["position"][k] + obstacle.get("velocity", [0, 0, 0])[k] * t for k in range(3)]
+    return math.dist(position, point) - obstacle["radius"]
+
+
+def sampled_clearance(scenario, path, vehicle_radius, samples=50):
+    """By dense sampling: an upper bound of the true minimum that is near it."""
+    least = math.inf
+    for (t0, *a), (t1, *b) in zip(path, path[1:]):
+        for i in range(samples + 1):
+            s = i / samples
+            point = [a[k] + s * (b[k] - a[k]) for k in range(3)]
+            for obstacle in scenario["obstacles"]:
+                least = min(least, distance_to_obstacle(obstacle, t0 + s * (t1 - t0), point) - vehicle_radius)
+    return least
+
+
+def plans(jink):
+    for name in PAPER:
+        scenario = yaml.safe_load((SCENARIOS / f"{name}.yaml").read_text())
+        for mode in ("paper", "horizon"):
+            plan = jink.summary("plan", SCENARIOS / f"{name}.yaml", "--mode", mode)
+            check(list(plan) == PLAN_KEYS, "the keys of jink-plan/1")
+            path = plan["path"]
+            check(plan["outcome"] == "reached" and path[-1][1:] == scenario["target"], f"reached {path[-1][1:]}")
+            speeds = [math.dist(a[1:], b[1:]) / (b[0] - a[0]) for a, b in zip(path, path[1:])]
+            check(max(speeds) <= 5.0 + 1e-9, f"fastest {max(speeds):.2f} m/s")
+            sampled = sampled_clearance(scenario, path, 0.30)
+            near = plan["min_clearance"] <= sampled + 1e-9 and sampled - plan["min_clearance"] < 0.02
+            check(near and plan["min_clearance"] > 0, f"clearance {plan['min_clearance']:.3f} m, sampled {sampled:.3f} m")
+            length = sum(math.dist(a[1:], b[1:]) for a, b in zip(path, path[1:]))
+            check(math.isclose(length, plan["path_length"], rel_tol=1e-9), "path_length is the path's")
+
+
+def paper_slr(jink):
+    """Mean SLR of 20 seeds at most 1.005 in every scenario of the paper."""
+    for name in PAPER:
+        rates = [jink.summary("plan", SCENARIOS / f"{name}.yaml", "--mode", "paper", "--seed", seed)["slr"] for seed in range(1, 21)]
+        check(sum(rates) / 20 <= 1.005, f"{name}: mean SLR {sum(rates) / 20:.5f} of 20 seeds")
+
+
+def same_bits(jink, folder):
+    for mode, constraint in (("paper", "swept"), ("paper", "paper"), ("horizon", "swept")):
+        found = set()
+        for threads in (1, 2, 8):
+            plan = jink.summary("plan", SCENARIOS / "table2-5.yaml", "--mode", mode, "--threads", threads, "--set", f"paper.constraint={constraint}")
+            plan.pop("threads"), plan.pop("planning_time_s")
+            found.add(json.dumps(plan))
+        check(len(found) == 1, f"{mode}, {constraint}: the same bytes with 1, 2 and 8 threads")
+    seeds = {json.dumps(jink.summary("plan", SCENARIOS / "table2-5.yaml", "--mode", "paper", "--seed", seed)["path"]) for seed in (1, 2)}
+    check(len(seeds) == 2, "another seed gives another plan")
+    flights = set()
+    for threads in (1, 2, 8):
+        log = folder / f"flight-{threads}.jsonl"
+        flight = jink.summary("replay", CROSSING, "--threads", threads, "--log", log)
+        check(list(flight)[:len(FLIGHT_KEYS)] == FLIGHT_KEYS, "the keys of jink-flight/1")
+        check(flight["outcome"] == "reached" and flight["min_clearance"] > 0, f"clearance {flight['min_clearance']:.2f} m")
+        flights.add(json.dumps(flight) + log.read_text())
+    check(len(flights) == 1, "replay: summary and log the same bytes with 1, 2 and 8 threads")
+
+
+def outcomes(jink, folder):
+    base = {"format": "jink-scenario/1", "name": "case", "start": [0, 0, 2], "target": [10, 0, 2], "vehicle": "ardrone2"}
+    cases = {
+        "start_blocked": [{"radius": 1.0, "position": [0.5, 0, 2]}],
+        "unreachable": [{"radius": 1.0, "position": [10, 0, 2]}],
+    }
+    for outcome, obstacles in cases.items():
+        file = folder / f"{outcome}.yaml"
+        file.write_text(yaml.safe_dump({**base, "obstacles": obstacles}))
+        for mode in ("paper", "horizon"):
+            check(jink.summary("plan", file, "--mode", mode, status=1)["outcome"] == outcome, f"{mode}: {outcome}")
+    check(jink.summary("replay", folder / "start_blocked.yaml", status=1)["outcome"] == "start_blocked", "replay: start_blocked")
+    occupied = folder / "occupied.yaml"
+    occupied.write_text(yaml.safe_dump({**base, "time_limit": 20, "obstacles": cases["unreachable"]}))
+    flight = jink.summary("replay", occupied, status=1)
+    waits = flight["outcome"] == "timeout" and flight["min_clearance"] > 0
+    check(waits, f"replay: waits clear of an occupied target, {flight['outcome']}, clearance {flight['min_clearance']:.2f} m")
+
+
+def test(program):
+    jink = Jink(program)
+    with tempfile.TemporaryDirectory(prefix="jink-command-line-") as name:
+        folder = pathlib.Path(name)
+        for case in (bad_usage, help_reads, plans, paper_slr):
+            print(f"== {case.__name__}", flush=True)
+            case(jink)
+        for case in (bad_values, same_bits, outcomes):
+            print(f"== {case.__name__}", flush=True)
+            case(jink, folder)
+
+
+main(test)
