@@ -9,13 +9,13 @@
 namespace jink::bridge {
 namespace {
 
-constexpr double kArrival = 0.3;         // m, to the last waypoint
-constexpr double kArrivalSpeed = 0.5;    // m/s
-constexpr double kPassing = 0.7;         // m, to a waypoint on the way
+constexpr double kArrival = 0.3;           // m, to the last waypoint
+constexpr double kArrivalSpeed = 0.5;      // m/s
+constexpr double kPassing = 0.7;           // m, to a waypoint on the way
 constexpr double kTakeoffTolerance = 0.3;  // m
-constexpr double kLostReference = 1.2;   // m from the reference, beyond which plans start at the vehicle instead
-constexpr double kYawRate = 1.5;         // rad/s, at which the heading turns to the next waypoint
-constexpr double kYawDistance = 1.0;     // m, a nearer waypoint does not turn it
+constexpr double kLostReference = 1.2;     // m from the reference, beyond which plans start at the vehicle instead
+constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
+constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 
 SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   SupervisorSettings result;
@@ -24,7 +24,9 @@ SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   return result;
 }
 
-double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
 
 }  // namespace
 
@@ -44,7 +46,8 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       parts_(std::move(parts)),
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
-      stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag, settings.horizon.braking}) {}
+      stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag,
+               settings.horizon.braking}) {}
 
 void Companion::event(double now, std::string_view name, const std::string& detail) {
   for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
@@ -54,8 +57,9 @@ bool Companion::step(double now) {
   if (last_step_ < 0.0) {
     for (Vec3& waypoint : mission_.waypoints) {
       if (waypoint.z() >= mission_.min_height) continue;
-      event(now, "raised", "a waypoint at " + std::to_string(waypoint.z()) + " m is raised to min_height " +
-                               std::to_string(mission_.min_height) + " m");
+      event(now, "raised",
+            "a waypoint at " + std::to_string(waypoint.z()) + " m is raised to min_height " +
+                std::to_string(mission_.min_height) + " m");
       waypoint.z() = mission_.min_height;
     }
   }
@@ -137,7 +141,9 @@ planner::Box Companion::volume(const Vec3& start) const {
 
 void Companion::start_plan(double now) {
   const config::CompanionSettings& companion = settings_.companion;
-  if (planner_failed_ || parts_.planner.busy() || (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz)) return;
+  if (planner_failed_ || parts_.planner.busy() ||
+      (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz))
+    return;
   last_plan_begun_ = now;
   PlanJob job;
   job.number = summary_.plans;
@@ -150,9 +156,12 @@ void Companion::start_plan(double now) {
   const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
   const bool lost = error > kLostReference;
   planner::PathRequest& request = job.request;
-  request.position = lost ? Vec3(state_.position + (job.start - state_.position_stamp) * state_.velocity) : reference.position;
+  request.position =
+      lost ? Vec3(state_.position + (job.start - state_.position_stamp) * state_.velocity) : reference.position;
   request.velocity = lost ? state_.velocity : reference.velocity;
-  if (lost && !announced_lost_) event(now, "reference_lost", "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
+  if (lost && !announced_lost_)
+    event(now, "reference_lost",
+          "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
   announced_lost_ = lost;
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
@@ -176,7 +185,8 @@ void Companion::start_plan(double now) {
 void Companion::move(double now, const Decision& decision) {
   using Motion = Decision::Motion;
   switch (decision.motion) {
-    case Motion::kNone: return;
+    case Motion::kNone:
+      return;
     case Motion::kTakeoffPoint:
       if (!stream_.active() || supervisor_.phase() == Phase::kEngaging) {
         takeoff_point_ = state_.position;
@@ -215,13 +225,14 @@ void Companion::move(double now, const Decision& decision) {
   }
 }
 
-// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it was
-// lost, and the vehicle's position is known.
+// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it
+// was lost, and the vehicle's position is known.
 void Companion::brake(double now) {
   if (stream_.braking()) return;
   const bool known = state_.position_stamp >= 0.0 && now - state_.position_stamp <= settings_.companion.stale_state;
-  const bool says_nothing = !stream_.active() || stream_.plan(now).empty() ||
-                            (stream_.reference(state_.position_stamp).position - state_.position).norm() > kLostReference;
+  const bool says_nothing =
+      !stream_.active() || stream_.plan(now).empty() ||
+      (stream_.reference(state_.position_stamp).position - state_.position).norm() > kLostReference;
   if (!known || !says_nothing) {
     stream_.brake(now);
     return;
@@ -264,7 +275,8 @@ FlightPicture Companion::picture(double now) {
 void Companion::next_waypoint(double now) {
   if (supervisor_.phase() != Phase::kFlying || waypoint_ + 1 >= mission_.waypoints.size()) return;
   if ((state_.position - mission_.waypoints[waypoint_]).norm() > kPassing) return;
-  event(now, "waypoint", std::to_string(waypoint_ + 1) + " of " + std::to_string(mission_.waypoints.size()) + " passed");
+  event(now, "waypoint",
+        std::to_string(waypoint_ + 1) + " of " + std::to_string(mission_.waypoints.size()) + " passed");
   ++waypoint_;
 }
 
@@ -294,8 +306,10 @@ void Companion::measure(double now) {
 void Companion::announce(double now) {
   if (supervisor_.phase() != announced_phase_) {
     announced_phase_ = supervisor_.phase();
-    event(now, "phase", std::string(to_string(announced_phase_)) +
-                            (supervisor_.done() ? ": " + std::string(to_string(supervisor_.outcome())) + ", " + supervisor_.reason() : ""));
+    event(now, "phase",
+          std::string(to_string(announced_phase_)) +
+              (supervisor_.done() ? ": " + std::string(to_string(supervisor_.outcome())) + ", " + supervisor_.reason()
+                                  : ""));
   }
   if (supervisor_.waiting_for() != announced_waiting_) {
     announced_waiting_ = supervisor_.waiting_for();
@@ -307,7 +321,8 @@ void Companion::announce(double now) {
   }
   if (table_.clock_offsets() > 0 && !announced_offset_) {
     announced_offset_ = true;
-    event(now, "tracks_clock", "a track writer's stamps are not this computer's time: only changes of its delay are known");
+    event(now, "tracks_clock",
+          "a track writer's stamps are not this computer's time: only changes of its delay are known");
   }
   if (table_.late_messages() != announced_late_ && std::floor(now) != std::floor(last_step_)) {  // once a second
     announced_late_ = table_.late_messages();
@@ -315,7 +330,8 @@ void Companion::announce(double now) {
   }
   const TrackSourceStatus tracks = parts_.tracks.status();
   summary_.dropped_tracks = tracks.dropped_tracks;
-  const bool refused = tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks;
+  const bool refused =
+      tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks;
   if (refused && std::floor(now) != std::floor(last_step_)) {  // once a second
     announced_tracks_ = tracks;
     event(now, "tracks_refused", tracks.last_refusal);

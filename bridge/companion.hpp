@@ -20,8 +20,8 @@
 
 namespace jink::bridge {
 
-/// Who wants to know what the companion does: the flight log, the live line. Called from the loop, unlocked; times are the
-/// companion's clock. Must not block.
+/// Who wants to know what the companion does: the flight log, the live line. Called from the loop, unlocked; times are
+/// the companion's clock. Must not block.
 class FlightObserver {
  public:
   virtual ~FlightObserver() = default;
@@ -68,8 +68,8 @@ class Companion {
  public:
   Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts);
 
-  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over. What
-  /// the planner throws ends the flight in HOLD, as Ctrl-C does, with its words as the reason.
+  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over.
+  /// What the planner throws ends the flight in HOLD, as Ctrl-C does, with its words as the reason.
   bool step(double now);
   /// Ends the flight as Ctrl-C does: brake, then HOLD.
   void interrupt(double now) { supervisor_.stop(now, Outcome::kAborted, "interrupted"); }
@@ -105,7 +105,8 @@ class Companion {
   std::size_t waypoint_ = 0;  // the one flown to
   double last_plan_begun_ = -1.0;
   double newest_plan_ = -1.0;
-  std::optional<double> unsent_track_;  // reception of the newest track in a plan whose first setpoint is still to be sent
+  std::optional<double>
+      unsent_track_;  // reception of the newest track in a plan whose first setpoint is still to be sent
   double unsent_from_ = 0.0;
   double yaw_ = 0.0;
   bool yaw_known_ = false;

@@ -60,7 +60,8 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
       const planner::Budget budget{
           settings_.horizon.generations,
           std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(deadline)};
-      result.plan = planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+      result.plan =
+          planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
       result.ms = 1e3 * (clock_.now() - begun);
       const std::scoped_lock lock(mutex_);
       result_ = std::move(result);
@@ -80,7 +81,8 @@ void VirtualPlanner::start(PlanJob job) {
   result.job = std::move(job);
   result.job.request.tracks = result.job.tracks;
   const planner::Budget budget{settings_.horizon.generations, planner::Budget::Time::max()};
-  result.plan = planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+  result.plan =
+      planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
   result.ms = 1e3 * latency_;
 }
 

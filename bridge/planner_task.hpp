@@ -3,8 +3,8 @@
 #pragma once
 
 #include <condition_variable>
-#include <exception>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -29,8 +29,8 @@ struct PlanJob {
 struct PlanResult {
   planner::Plan plan;  ///< path times from `job.start` on
   PlanJob job;
-  double ms = 0.0;       ///< spent planning: wall time, or the configured latency in virtual time
-  bool missed = false;   ///< it came after its own start
+  double ms = 0.0;      ///< spent planning: wall time, or the configured latency in virtual time
+  bool missed = false;  ///< it came after its own start
 };
 
 /// One job at a time.

@@ -9,9 +9,10 @@
 namespace jink::bridge {
 namespace {
 
-constexpr double kBrakeStep = 0.05;  // s, between points of a stop
-constexpr double kAtRest = 0.02;     // m/s
-constexpr double kHistory = 1.0;     // s, of a path followed before that is kept: positions arrive late
+constexpr double kBrakeStep = 0.05;     // s, between points of a stop
+constexpr double kAtRest = 0.02;        // m/s
+constexpr double kJoint = 1e-6;         // s, between the end of one path and the beginning of the next
+constexpr double kHistory = 1.0;        // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;  // m/s, below which a lag says little about drag
 constexpr double kLearningRate = 0.4;   // 1/s² of drag for each metre of lag
 constexpr double kMostDrag = 2.0;       // 1/s
@@ -30,7 +31,13 @@ void SetpointStream::follow(planner::TimedPath path) {
   if (!next_.empty()) {
     // The one that waits for its start, or was followed till now, goes on where the present one ends.
     const double joint = next_.front().t;
-    std::erase_if(current_, [&](const planner::TimedPoint& p) { return p.t >= joint || p.t < joint - kHistory; });
+    if (current_.front().t < joint - kJoint) {
+      planner::TimedPoint end = planner::sample(current_, joint - kJoint);
+      std::erase_if(current_, [&](const planner::TimedPoint& p) { return p.t >= end.t || p.t < joint - kHistory; });
+      current_.push_back(end);
+    } else {
+      current_.clear();
+    }
     current_.insert(current_.end(), next_.begin(), next_.end());
   }
   next_ = std::move(path);

@@ -23,11 +23,11 @@ class SetpointStream {
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
-  /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed before.
-  /// Precondition: not empty.
+  /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed
+  /// before. Precondition: not empty.
   void follow(planner::TimedPath path);
-  /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity, then
-  /// holds there. Does nothing while a brake is on.
+  /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity,
+  /// then holds there. Does nothing while a brake is on.
   void brake(double now, const std::optional<planner::TimedPoint>& measured = {});
 
   /// Where the vehicle is to be at time t. Precondition: active().
@@ -35,8 +35,8 @@ class SetpointStream {
   /// The setpoint to send at `now`, heading `yaw`.
   [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
 
-  /// Learns the drag from how far the vehicle, measured at `position` at time t, lags behind the reference or runs ahead of
-  /// it; `dt` since the last call.
+  /// Learns the drag from how far the vehicle, measured at `position` at time t, lags behind the reference or runs
+  /// ahead of it; `dt` since the last call.
   void learn(double t, const Vec3& position, double dt);
   /// The drag that setpoints make up for now, 1/s.
   [[nodiscard]] double drag() const { return drag_; }

@@ -10,8 +10,8 @@ namespace {
 constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
 constexpr double kAskAgain = 1.5;          // s; a confirming heartbeat takes up to one
 constexpr int kMostTries = 5;
-constexpr double kSettling = 0.3;          // s, within which a request acts; PX4 takes up to 15 ms
-constexpr double kReadyAgain = 10.0;       // s, to become ready again between the first request and arming
+constexpr double kSettling = 0.3;         // s, within which a request acts; PX4 takes up to 15 ms
+constexpr double kReadyAgain = 10.0;      // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;    // s
 constexpr double kLandingTimeout = 90.0;  // s
 constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
@@ -23,27 +23,42 @@ using Motion = Decision::Motion;
 
 std::string_view to_string(Phase phase) {
   switch (phase) {
-    case Phase::kWaiting: return "waiting";
-    case Phase::kEngaging: return "engaging";
-    case Phase::kClimbing: return "climbing";
-    case Phase::kFlying: return "flying";
-    case Phase::kStopping: return "stopping";
-    case Phase::kHandover: return "handover";
-    case Phase::kLanding: return "landing";
-    case Phase::kDone: return "done";
+    case Phase::kWaiting:
+      return "waiting";
+    case Phase::kEngaging:
+      return "engaging";
+    case Phase::kClimbing:
+      return "climbing";
+    case Phase::kFlying:
+      return "flying";
+    case Phase::kStopping:
+      return "stopping";
+    case Phase::kHandover:
+      return "handover";
+    case Phase::kLanding:
+      return "landing";
+    case Phase::kDone:
+      return "done";
   }
   return "done";
 }
 
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::kNone: return "none";
-    case Outcome::kReached: return "reached";
-    case Outcome::kCollision: return "collision";
-    case Outcome::kTimeout: return "timeout";
-    case Outcome::kLeftWorld: return "left_world";
-    case Outcome::kStartBlocked: return "start_blocked";
-    case Outcome::kAborted: return "aborted";
+    case Outcome::kNone:
+      return "none";
+    case Outcome::kReached:
+      return "reached";
+    case Outcome::kCollision:
+      return "collision";
+    case Outcome::kTimeout:
+      return "timeout";
+    case Outcome::kLeftWorld:
+      return "left_world";
+    case Outcome::kStartBlocked:
+      return "start_blocked";
+    case Outcome::kAborted:
+      return "aborted";
   }
   return "none";
 }
@@ -75,7 +90,9 @@ std::optional<Command> Supervisor::ask(Command command, double now) {
 }
 
 // Asked often enough, and the last request has had its time too.
-bool Supervisor::exhausted(double now) const { return tries_ >= kMostTries && now - asked_ >= kAskAgain; }
+bool Supervisor::exhausted(double now) const {
+  return tries_ >= kMostTries && now - asked_ >= kAskAgain;
+}
 
 void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   if (phase_ == Phase::kDone || phase_ == Phase::kStopping || phase_ == Phase::kHandover) return;
@@ -101,10 +118,14 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
   }
   if (taken_over(state)) return {};
   switch (phase_) {
-    case Phase::kWaiting: return wait(now, state, picture);
-    case Phase::kEngaging: return engage(now, state, picture);
-    case Phase::kClimbing: return climb(now, state, picture);
-    case Phase::kFlying: return fly(now, state, picture);
+    case Phase::kWaiting:
+      return wait(now, state, picture);
+    case Phase::kEngaging:
+      return engage(now, state, picture);
+    case Phase::kClimbing:
+      return climb(now, state, picture);
+    case Phase::kFlying:
+      return fly(now, state, picture);
     case Phase::kStopping: {
       const double stopping = now - entered_;
       if (!state.in_air || stopping > kLongestStop || (picture.at_rest && stopping > kShortestStop)) {
@@ -112,9 +133,12 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
       }
       return {Motion::kBrake, {}};
     }
-    case Phase::kHandover: return hand_over(now, state);
-    case Phase::kLanding: return land(now, state);
-    case Phase::kDone: return {};
+    case Phase::kHandover:
+      return hand_over(now, state);
+    case Phase::kLanding:
+      return land(now, state);
+    case Phase::kDone:
+      return {};
   }
   return {};
 }
@@ -142,8 +166,8 @@ bool Supervisor::taken_over(const VehicleState& state) {
 // What a flight cannot begin without, into waiting_for_; empty: nothing.
 void Supervisor::find_missing(double now, const VehicleState& state, const FlightPicture& picture) {
   const bool autopilot = state.heartbeat_stamp >= 0.0 && now - state.heartbeat_stamp < kHeartbeatTimeout;
-  const bool tracks =
-      !mission_.tracks.required || (picture.newest_tracks >= 0.0 && now - picture.newest_tracks < mission_.tracks.timeout_s);
+  const bool tracks = !mission_.tracks.required ||
+                      (picture.newest_tracks >= 0.0 && now - picture.newest_tracks < mission_.tracks.timeout_s);
   const bool position = state.position_stamp >= 0.0 && now - state.position_stamp < settings_.stale_state;
   const bool ready = position && state.local_position_ok && (state.armed || state.armable);
   waiting_for_.clear();
@@ -155,7 +179,8 @@ void Supervisor::find_missing(double now, const VehicleState& state, const Fligh
     waiting_for_ = "obstacle tracks on DDS domain " + std::to_string(mission_.dds_domain);
     absent_ = MissingPeer::kTracks;
   } else if (!ready) {
-    waiting_for_ = "the autopilot to be ready: " + (state.health.empty() ? std::string("local position") : state.health);
+    waiting_for_ =
+        "the autopilot to be ready: " + (state.health.empty() ? std::string("local position") : state.health);
   }
 }
 
@@ -184,7 +209,8 @@ Decision Supervisor::engage(double now, const VehicleState& state, const FlightP
   }
   if (exhausted(now)) {
     stop(now, Outcome::kAborted,
-         refusal_.empty() ? "the autopilot did not follow the request: " + std::string(to_string(*asked_for_)) : refusal_);
+         refusal_.empty() ? "the autopilot did not follow the request: " + std::string(to_string(*asked_for_))
+                          : refusal_);
     return decision;
   }
   if (state.mode != FlightMode::kOffboard) {

@@ -12,13 +12,13 @@
 namespace jink::bridge {
 
 enum class Phase {
-  kWaiting,    ///< for autopilot, health, tracks
-  kEngaging,   ///< setpoints stream; OFFBOARD is asked for, then arming
-  kClimbing,   ///< take-off, in OFFBOARD
-  kFlying,     ///< follows plans
-  kStopping,   ///< brakes, then hands over
-  kHandover,   ///< HOLD is asked for
-  kLanding,    ///< NAV_LAND is asked for and watched
+  kWaiting,   ///< for autopilot, health, tracks
+  kEngaging,  ///< setpoints stream; OFFBOARD is asked for, then arming
+  kClimbing,  ///< take-off, in OFFBOARD
+  kFlying,    ///< follows plans
+  kStopping,  ///< brakes, then hands over
+  kHandover,  ///< HOLD is asked for
+  kLanding,   ///< NAV_LAND is asked for and watched
   kDone
 };
 std::string_view to_string(Phase phase);
@@ -40,11 +40,11 @@ struct SupervisorSettings {
 
 /// What the companion knows besides the vehicle's state.
 struct FlightPicture {
-  double newest_tracks = -1.0;      ///< reception of the newest track message; negative: never
-  double newest_plan = -1.0;        ///< when the newest plan was made; negative: none
+  double newest_tracks = -1.0;  ///< reception of the newest track message; negative: never
+  double newest_plan = -1.0;    ///< when the newest plan was made; negative: none
   bool at_takeoff_height = false;
-  bool at_target = false;           ///< within the arrival tolerance of the last waypoint, slow
-  bool at_rest = false;             ///< the brake has done its work
+  bool at_target = false;               ///< within the arrival tolerance of the last waypoint, slow
+  bool at_rest = false;                 ///< the brake has done its work
   std::optional<CommandReport> report;  ///< newest answer of the autopilot
 };
 
@@ -55,9 +55,9 @@ struct Decision {
   std::optional<Command> request;
 };
 
-/// Arms only where the autopilot says it is ready and never by force. Confirms arming and modes by the heartbeat, not by an
-/// acknowledgement; asks again where nothing happened, a few times. Any mode change that was not asked for ends the flight
-/// and the stream at once: a pilot's word is the last one.
+/// Arms only where the autopilot says it is ready and never by force. Confirms arming and modes by the heartbeat, not
+/// by an acknowledgement; asks again where nothing happened, a few times. Any mode change that was not asked for ends
+/// the flight and the stream at once: a pilot's word is the last one.
 class Supervisor {
  public:
   Supervisor(const config::Mission& mission, const SupervisorSettings& settings)
@@ -103,13 +103,13 @@ class Supervisor {
   double began_ = -1.0;    // the first update
   double flight_began_ = -1.0;
   double hazard_since_ = -1.0;
-  double asked_ = -1.0;    // the newest request
+  double asked_ = -1.0;  // the newest request
   std::optional<Command> asked_for_;
   int tries_ = 0;
   FlightMode mode_before_ = FlightMode::kUnknown;  // when OFFBOARD was first asked for
-  bool offboard_seen_ = false;  // the heartbeat confirmed OFFBOARD since we asked
-  double unsettled_until_ = -1.0;  // a request may act until then: an older heartbeat says nothing of it
-  double not_ready_since_ = -1.0;  // while engaging
+  bool offboard_seen_ = false;                     // the heartbeat confirmed OFFBOARD since we asked
+  double unsettled_until_ = -1.0;            // a request may act until then: an older heartbeat says nothing of it
+  double not_ready_since_ = -1.0;            // while engaging
   MissingPeer absent_ = MissingPeer::kNone;  // whom waiting_for_ is about
   Outcome outcome_ = Outcome::kNone;
   Outcome pending_outcome_ = Outcome::kNone;  // once the hand-over is through

@@ -12,9 +12,9 @@ namespace jink::bridge {
 
 /// One message of one writer: all tracks that it now sees, in ENU.
 struct TrackMessage {
-  std::uint64_t writer = 0;   ///< stable identity of the writer
-  double received = 0.0;      ///< companion's clock, at reception
-  double stamp_age = 0.0;     ///< system time at reception minus the message's stamp; as measured, may be absurd
+  std::uint64_t writer = 0;  ///< stable identity of the writer
+  double received = 0.0;     ///< companion's clock, at reception
+  double stamp_age = 0.0;    ///< system time at reception minus the message's stamp; as measured, may be absurd
   std::vector<planner::Track> tracks;
   std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
 };

@@ -9,7 +9,8 @@
 namespace jink::bridge {
 namespace {
 
-constexpr double kStampRate = 0.1;  // s of stamp for each second of reception, below which a writer's stamps stand still
+constexpr double kStampRate =
+    0.1;  // s of stamp for each second of reception, below which a writer's stamps stand still
 
 }  // namespace
 
@@ -30,7 +31,8 @@ std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
   }
   if (age - writer.smallest_age > kLongestDelay) {
     if (writer.late_since < 0.0) writer.late_since = message.received;
-    // Held up on the way, or the same old measurement again. Only where it goes on so and new ones come was a clock set.
+    // Held up on the way, or the same old measurement again. Only where it goes on so and new ones come was a clock
+    // set.
     if (!advanced || message.received - writer.late_since <= kLongestDelay) return std::nullopt;
     writer.smallest_age = age;
   }

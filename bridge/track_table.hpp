@@ -20,15 +20,16 @@ class TrackTable {
   /// `coast_s`: how long a track lives on after the last message that held it.
   explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
 
-  /// Takes in one message. The measurement's instant is the reception less the delay read from the stamp. A stamp that lies
-  /// in the future or more than kLongestDelay back tells of a clock that is off: then the writer's smallest stamp age so far
-  /// stands for the offset and what exceeds it for the delay. A message whose delay exceeds kLongestDelay is left out, as
-  /// if it had not come; where that lasts for kLongestDelay with stamps that advance, a clock was set and its offset is
-  /// learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
+  /// Takes in one message. The measurement's instant is the reception less the delay read from the stamp. A stamp that
+  /// lies in the future or more than kLongestDelay back tells of a clock that is off: then the writer's smallest stamp
+  /// age so far stands for the offset and what exceeds it for the delay. A message whose delay exceeds kLongestDelay is
+  /// left out, as if it had not come; where that lasts for kLongestDelay with stamps that advance, a clock was set and
+  /// its offset is learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
   void ingest(const TrackMessage& message);
 
-  /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity. Their
-  /// age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use the same.
+  /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
+  /// Their age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use
+  /// the same.
   std::vector<planner::Track> predict(double now, double trust);
 
   /// Reception of the newest message of any writer; negative: none yet.

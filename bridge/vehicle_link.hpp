@@ -14,7 +14,17 @@ namespace jink::bridge {
 using planner::Vec3;
 
 enum class FlightMode {
-  kUnknown, kManual, kAltitude, kPosition, kHold, kTakeoff, kLand, kReturn, kMission, kOffboard, kOther
+  kUnknown,
+  kManual,
+  kAltitude,
+  kPosition,
+  kHold,
+  kTakeoff,
+  kLand,
+  kReturn,
+  kMission,
+  kOffboard,
+  kOther
 };
 /// "hold", "offboard", ...: for people and logs.
 std::string_view to_string(FlightMode mode);

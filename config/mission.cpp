@@ -101,8 +101,10 @@ TrackPolicy read_tracks(const Value& value) {
 }  // namespace
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(read_document(file), {"format", "name", "connection", "vehicle", "takeoff_height", "min_height",
-                                      "waypoints", "arrival", "geofence", "dds", "tracks", "time_limit"}, "jink-mission/1");
+  const Map map(read_document(file),
+                {"format", "name", "connection", "vehicle", "takeoff_height", "min_height", "waypoints", "arrival",
+                 "geofence", "dds", "tracks", "time_limit"},
+                "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));

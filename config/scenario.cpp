@@ -166,7 +166,8 @@ double default_time_limit(const Scenario& scenario) {
 
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles"}, "jink-scenario/1");
+                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles"},
+                "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
   if (const auto world = map.find("world")) scenario.world = read_box(*world, kCoordinate);

@@ -77,6 +77,8 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"acceleration_trust", &HorizonSettings::acceleration_trust, closed(0, 600)},
     {"clearance_limit", &HorizonSettings::clearance_limit, closed(0, 1000)},
     {"time_weight", &HorizonSettings::time_weight, closed(0, 1000)},
+    {"deviation_weight", &HorizonSettings::deviation_weight, closed(0, 100)},
+    {"length_band", &HorizonSettings::length_band, closed(0, 100)},
     {"weight_length", &HorizonSettings::weight_length, closed(0, 1000)},
     {"weight_steering", &HorizonSettings::weight_steering, closed(0, 1000)},
     {"weight_clearance", &HorizonSettings::weight_clearance, closed(0, 1000)},

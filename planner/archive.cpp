@@ -8,7 +8,8 @@
 namespace jink::planner {
 namespace {
 
-constexpr int kCellsPerObjective = 10;  // neighbourhoods of Eq. (21): a tenth of the front's extent in each objective
+constexpr double kLeastExtent = 1e-300;  // below, cells per extent overflow
+constexpr int kCellsPerObjective = 10;   // neighbourhoods of Eq. (21): a tenth of the front's extent in each objective
 
 std::size_t cell_count(int objectives) {
   std::size_t cells = 1;
@@ -67,7 +68,7 @@ void Archive::count_neighbours() {
       high = std::max(high, cost_[i].f[objective]);
     }
     const double extent = high - low[objective];
-    scale[objective] = extent > 0.0 ? kCellsPerObjective / extent : 0.0;
+    scale[objective] = extent > kLeastExtent ? kCellsPerObjective / extent : 0.0;
   }
   std::fill(occupancy_.begin(), occupancy_.end(), 0);
   for (std::size_t i = 0; i < size_; ++i) {

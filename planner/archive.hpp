@@ -20,8 +20,8 @@ class Archive {
 
   void clear() { size_ = 0; }
 
-  /// Adds a solution unless a member dominates or equals it; removes the members that it dominates. Where the archive is
-  /// full, first one member goes, drawn by roulette with weight N_i/alpha (Eq. (21)), N_i the members in its cell of
+  /// Adds a solution unless a member dominates or equals it; removes the members that it dominates. Where the archive
+  /// is full, first one member goes, drawn by roulette with weight N_i/alpha (Eq. (21)), N_i the members in its cell of
   /// objective space, itself included; never a member that is best in an objective. True when it was added.
   /// O(capacity · objectives).
   bool add(std::span<const double> x, const Cost& cost, RandomStream& random);

@@ -8,12 +8,12 @@
 namespace jink::planner {
 
 double line_discriminant(const Vec3& a, const Vec3& b, const Vec3& center, double radius) {
-  const Vec3 delta = b - a;        // Eq. (8)
+  const Vec3 delta = b - a;  // Eq. (8)
   const Vec3 offset = a - center;
-  const double A = delta.squaredNorm();                            // Eq. (11)
-  const double B = 2.0 * delta.dot(offset);                        // Eq. (12)
-  const double C = offset.squaredNorm() - radius * radius;         // Eq. (13)
-  return B * B - 4.0 * A * C;                                      // Eq. (14)
+  const double A = delta.squaredNorm();                     // Eq. (11)
+  const double B = 2.0 * delta.dot(offset);                 // Eq. (12)
+  const double C = offset.squaredNorm() - radius * radius;  // Eq. (13)
+  return B * B - 4.0 * A * C;                               // Eq. (14)
 }
 
 double swept_distance_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

@@ -7,13 +7,13 @@
 
 namespace jink::planner {
 
-/// Discriminant of [Paper] Eq. (14) for the infinite line through a and b and a sphere: B² − 4AC, m⁴; negative where the
-/// line misses the sphere. differs: signed differences (Eq. (8) prints absolute values, which mirror the segment) and the
-/// segment's own start in B and C (Eq. (12), (13) print the waypoint before it).
+/// Discriminant of [Paper] Eq. (14) for the infinite line through a and b and a sphere: B² − 4AC, m⁴; negative where
+/// the line misses the sphere. differs: signed differences (Eq. (8) prints absolute values, which mirror the segment)
+/// and the segment's own start in B and C (Eq. (12), (13) print the waypoint before it).
 double line_discriminant(const Vec3& a, const Vec3& b, const Vec3& center, double radius);
 
-/// Smallest squared distance during one segment in which the vehicle moves from a to b and the obstacle from c to d, both
-/// at constant velocity: the quadratic in relative motion, restricted to t ∈ [0, 1].
+/// Smallest squared distance during one segment in which the vehicle moves from a to b and the obstacle from c to d,
+/// both at constant velocity: the quadratic in relative motion, restricted to t ∈ [0, 1].
 double swept_distance_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// An orthonormal frame along the mission: axis from start to target, `left` level, `up` = axis × left. Where start and

@@ -34,8 +34,8 @@ Verification verify_until(const TimedPath& path, const PathRequest& request, dou
   return verify({path, request.tracks, 0.0, request.vehicle.radius, request.volume, request.acceleration_trust, until});
 }
 
-/// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than the
-/// verifier's accuracy), then the softer contact.
+/// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
+/// the verifier's accuracy), then the softer contact.
 bool less_harm(const Verification& a, const Verification& b) {
   if (a.free() != b.free()) return a.free();
   if (a.free()) return a.min_clearance > b.min_clearance;
@@ -92,8 +92,8 @@ void HorizonPlanner::seed_manoeuvres(const PathRequest& request, const TimedPath
   }
 }
 
-Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
-                          const Budget& budget, WorkerPool& pool) {
+Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
+                          std::uint64_t number, const Budget& budget, WorkerPool& pool) {
   if (!finite(request)) return {};
   problem_.prepare(request);
   seed_manoeuvres(request, previous);
@@ -108,9 +108,23 @@ Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous,
   return plan;
 }
 
+// TOPSIS looks for a compromise between the front's extremes, and a front's far end is no measure of what a detour may
+// cost: what is much longer than need be counts as violating, by how much.
+std::vector<Cost> HorizonPlanner::banded(std::span<const Cost> costs) const {
+  double shortest = kInfinity;
+  for (const Cost& cost : costs) {
+    if (cost.violation == 0.0) shortest = std::min(shortest, cost.f[0]);
+  }
+  std::vector<Cost> result(costs.begin(), costs.end());
+  for (Cost& cost : result) {
+    if (cost.violation == 0.0) cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest);
+  }
+  return result;
+}
+
 Plan HorizonPlanner::choose(const PathRequest& request, const Front& front) const {
   const std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
-  const std::vector<int> order = topsis_order(front.costs, problem_.objectives(), weights);
+  const std::vector<int> order = topsis_order(banded(front.costs), problem_.objectives(), weights);
   Plan best;
   for (std::size_t i = 0; i < std::min(order.size(), kMostVerified); ++i) {
     const auto candidate = static_cast<std::size_t>(order[i]);
@@ -170,7 +184,8 @@ Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std
     whole.deadline_reached = whole.deadline_reached || part.deadline_reached;
     const bool last = part.status == PlanStatus::kReaches || t + request.commit >= request.time_limit ||
                       part.path.back().t <= request.commit || (budget.expired() && whole.deadline_reached);
-    const double keep = part.status == PlanStatus::kReaches ? part.path.back().t : std::min(request.commit, part.path.back().t);
+    const double keep =
+        part.status == PlanStatus::kReaches ? part.path.back().t : std::min(request.commit, part.path.back().t);
     for (const TimedPoint& point : part.path) {
       if (point.t > keep + 1e-9) break;
       if (!whole.path.empty() && point.t <= 1e-9) continue;
@@ -186,7 +201,8 @@ Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std
   }
   whole.verification = verify_until(whole.path, request.path, kInfinity);
   const bool arrived = (whole.path.back().position - request.path.target).norm() < 1e-6;
-  whole.status = whole.verification.free() ? (arrived ? PlanStatus::kReaches : PlanStatus::kProgresses) : PlanStatus::kBlocked;
+  whole.status =
+      whole.verification.free() ? (arrived ? PlanStatus::kReaches : PlanStatus::kProgresses) : PlanStatus::kBlocked;
   return whole;
 }
 

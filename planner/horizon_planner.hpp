@@ -14,20 +14,20 @@
 
 namespace jink::planner {
 
-/// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits for
-/// the same request, previous plan, seed and generations, whatever the number of threads.
+/// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits
+/// for the same request, previous plan, seed and generations, whatever the number of threads.
 class HorizonPlanner {
  public:
   /// Throws std::invalid_argument for settings that Pmomvo refuses.
   explicit HorizonPlanner(const HorizonSettings& settings);
 
-  /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start; empty:
-  /// none. It seeds the search, and it is kept where it is still free and a new plan is not clearly better. `number` counts
-  /// the plans of a flight and names the random stream.
+  /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
+  /// empty: none. It seeds the search, and it is kept where it is still free and a new plan is not clearly better.
+  /// `number` counts the plans of a flight and names the random stream.
   ///
-  /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it was
-  /// verified free in continuous time, apart from the optimizer. Where nothing free was found the path is the candidate that
-  /// stays free the longest, then has the softest contact.
+  /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it
+  /// was verified free in continuous time, apart from the optimizer. Where nothing free was found the path is the
+  /// candidate that stays free the longest, then has the softest contact.
   Plan plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
             const Budget& budget, WorkerPool& pool);
 
@@ -36,6 +36,7 @@ class HorizonPlanner {
  private:
   void seed_manoeuvres(const PathRequest& request, const TimedPath& previous);
   Plan choose(const PathRequest& request, const Front& front) const;
+  [[nodiscard]] std::vector<Cost> banded(std::span<const Cost> costs) const;
   void keep_previous(const PathRequest& request, const TimedPath& previous, Plan& plan) const;
 
   HorizonSettings settings_;
@@ -50,8 +51,8 @@ struct OpenLoopRequest {
   double commit = 0.5;      ///< how much of each plan is kept before planning on
 };
 
-/// The whole path at once, for `jink plan`: one plan after the other along the path itself, the obstacles extrapolated from
-/// t = 0. The finished path is verified: kReaches only where all of it is free and it ends at the target.
+/// The whole path at once, for `jink plan`: one plan after the other along the path itself, the obstacles extrapolated
+/// from t = 0. The finished path is verified: kReaches only where all of it is free and it ends at the target.
 Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed, Budget budget,
                     WorkerPool& pool);
 

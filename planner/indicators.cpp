@@ -22,9 +22,8 @@ std::vector<Point2> non_dominated(std::span<const Point2> points) {
 }
 
 double extent(std::span<const Point2> points, std::size_t objective) {
-  const auto [low, high] = std::minmax_element(points.begin(), points.end(), [=](const Point2& a, const Point2& b) {
-    return a[objective] < b[objective];
-  });
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(), [=](const Point2& a, const Point2& b) { return a[objective] < b[objective]; });
   return (*high)[objective] - (*low)[objective];
 }
 

@@ -28,8 +28,8 @@ double hypervolume(std::span<const Point2> points, const Point2& reference);
 /// objective in which the reference has no extent counts 1. Preconditions: both not empty.
 double maximum_spread(std::span<const Point2> front, std::span<const Point2> reference);
 
-/// HRS (Collette and Siarry): the largest gap between neighbours along the front over the mean gap; 1 for fewer than three
-/// points or a front without extent.
+/// HRS (Collette and Siarry): the largest gap between neighbours along the front over the mean gap; 1 for fewer than
+/// three points or a front without extent.
 double hole_relative_size(std::span<const Point2> front);
 
 /// SLR: path length over straight distance; 1 where the straight distance is 0 and nothing was flown.

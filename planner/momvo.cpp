@@ -72,8 +72,7 @@ void Momvo::move(double fraction) {
     const auto x = universe(static_cast<std::size_t>(order_[position]));
     const auto leader = archive_.x(archive_.draw(random_));
     // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
-    const double inflation =
-        universes_ > 1 ? static_cast<double>(position) / static_cast<double>(universes_ - 1) : 0.0;
+    const double inflation = universes_ > 1 ? static_cast<double>(position) / static_cast<double>(universes_ - 1) : 0.0;
     for (std::size_t j = 0; j < d; ++j) {
       if (random_.uniform() < inflation) {
         const auto giver = static_cast<std::size_t>(order_[white_hole(universes_, random_)]);

@@ -26,8 +26,8 @@ class Momvo {
   /// Places a solution among the initial universes; `slot` is taken modulo their number.
   void place(std::size_t slot, std::span<const double> x);
 
-  /// One iteration: clamp, evaluate, update the archive, rank, then move every universe through black and white holes and
-  /// wormholes. `fraction` in (0, 1] of the budget is used when it ends: it sets WEP and TDR.
+  /// One iteration: clamp, evaluate, update the archive, rank, then move every universe through black and white holes
+  /// and wormholes. `fraction` in (0, 1] of the budget is used when it ends: it sets WEP and TDR.
   void iterate(double fraction);
 
   /// Draws the representative that this population sends to the master, by roulette from its own archive. Precondition:

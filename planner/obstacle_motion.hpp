@@ -8,12 +8,13 @@
 
 namespace jink::planner {
 
-/// The track's position after t >= 0 seconds: constant acceleration for the first `trust` seconds, constant velocity from
-/// then on. differs: [Paper] Eq. (5)-(7) add v(t+Δt)Δt + ½aΔt², which is aΔt² too much; this is x + vΔt + ½aΔt².
+/// The track's position after t >= 0 seconds: constant acceleration for the first `trust` seconds, constant velocity
+/// from then on. differs: [Paper] Eq. (5)-(7) add v(t+Δt)Δt + ½aΔt², which is aΔt² too much; this is x + vΔt + ½aΔt².
 /// `trust` bounds how far a measured acceleration is believed; infinity makes it the paper's model.
 inline Vec3 predict_position(const Track& track, double t, double trust = kInfinity) {
   const double accelerated = std::min(t, trust);
-  const Vec3 position = track.position + accelerated * track.velocity + 0.5 * accelerated * accelerated * track.acceleration;
+  const Vec3 position =
+      track.position + accelerated * track.velocity + 0.5 * accelerated * accelerated * track.acceleration;
   if (t <= trust) return position;
   return position + (t - accelerated) * (track.velocity + accelerated * track.acceleration);
 }

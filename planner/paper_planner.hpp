@@ -16,7 +16,7 @@ namespace jink::planner {
 struct PaperRequest {
   Vec3 start = Vec3::Zero();
   Vec3 target = Vec3::Zero();
-  Box volume;                     ///< the path stays inside; start and target are
+  Box volume;  ///< the path stays inside; start and target are
   VehicleLimits vehicle;
   std::span<const Track> tracks;  ///< valid at t = 0
   OptimizerSettings optimizer;
@@ -29,10 +29,10 @@ struct PaperRequest {
 /// extent in x is less than a third of the distance).
 Axis effective_axis(const PaperRequest& request);
 
-/// Plans the whole path at once. Each step's optimum is chosen from the front by modified TOPSIS with entropy weights among
-/// the solutions that violate nothing, or the least. The finished path is verified in continuous time: the status is kReaches
-/// only for a free one, else kBlocked. The same bits for any number of threads. Throws std::invalid_argument for settings
-/// that Pmomvo refuses or fewer than two waypoints.
+/// Plans the whole path at once. Each step's optimum is chosen from the front by modified TOPSIS with entropy weights
+/// among the solutions that violate nothing, or the least. The finished path is verified in continuous time: the status
+/// is kReaches only for a free one, else kBlocked. The same bits for any number of threads. Throws
+/// std::invalid_argument for settings that Pmomvo refuses or fewer than two waypoints.
 Plan plan_paper(const PaperRequest& request, WorkerPool& pool);
 
 }  // namespace jink::planner

@@ -67,7 +67,9 @@ void Ranking::crowd(std::span<const Cost> costs, int objectives) {
   std::fill_n(crowding_.begin(), n, 0.0);
   for (int k = 0; k < objectives; ++k) {
     const auto objective = static_cast<std::size_t>(k);
-    const auto value = [&](std::size_t position) { return costs[static_cast<std::size_t>(sorted_[position])].f[objective]; };
+    const auto value = [&](std::size_t position) {
+      return costs[static_cast<std::size_t>(sorted_[position])].f[objective];
+    };
     std::iota(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n), 0);
     std::sort(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n), [&](int a, int b) {
       const auto i = static_cast<std::size_t>(a);
@@ -78,7 +80,8 @@ void Ranking::crowd(std::span<const Cost> costs, int objectives) {
     });
     for (std::size_t low = 0; low < n;) {
       std::size_t high = low;
-      while (high + 1 < n && front_[static_cast<std::size_t>(sorted_[high + 1])] == front_[static_cast<std::size_t>(sorted_[low])]) {
+      while (high + 1 < n &&
+             front_[static_cast<std::size_t>(sorted_[high + 1])] == front_[static_cast<std::size_t>(sorted_[low])]) {
         ++high;
       }
       const double extent = value(high) - value(low);

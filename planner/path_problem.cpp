@@ -18,7 +18,9 @@ constexpr double kShortLeg = 0.1;       // m, legs below have no direction
 constexpr double kLongestTail = 600.0;  // s, of straight flight after the horizon
 constexpr std::size_t kChunk = 32;      // obstacles tested at a time
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 Vec3 limited(const Vec3& v, double limit) {
   const double norm = v.norm();
@@ -56,7 +58,8 @@ void PathProblem::prepare(const PathRequest& request) {
 void PathProblem::undisturbed_flight() {
   const VehicleLimits& vehicle = request_.vehicle;
   const double climb_share = std::abs(frame_.axis.z());
-  const double cruise = climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
+  const double cruise =
+      climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
   const double change = settings_.acceleration_share * vehicle.max_acceleration * settings_.step;
   double distance = 0.0;
   double speed = std::clamp(request_.velocity.dot(frame_.axis), 0.0, vehicle.max_speed);
@@ -82,7 +85,9 @@ void PathProblem::undisturbed_flight() {
 }
 
 void PathProblem::predict_obstacles() {
-  const auto reach = [&](double t) { return request_.vehicle.max_speed * t + request_.velocity.norm() * settings_.step; };
+  const auto reach = [&](double t) {
+    return request_.vehicle.max_speed * t + request_.velocity.norm() * settings_.step;
+  };
   // Clearance asked for on top of the hard margin after t seconds.
   const auto uncertainty = [&](const Track& track, double t) {
     const double ahead = t + track.age;
@@ -125,7 +130,8 @@ Vec3 PathProblem::offset(std::span<const double> x, int k) const {
   const std::size_t i = index(k - 1);
   const double along = x[3 * i] * (x[3 * i] > 0.0 ? ahead_[i] : behind_[i]);
   const Vec3 base = undisturbed(k * steps_per_leg_);
-  const Vec3 wish = base + along * frame_.axis + x[3 * i + 1] * aside_[i] * frame_.left + x[3 * i + 2] * aside_[i] * frame_.up;
+  const Vec3 wish =
+      base + along * frame_.axis + x[3 * i + 1] * aside_[i] * frame_.left + x[3 * i + 2] * aside_[i] * frame_.up;
   return wish.cwiseMax(request_.volume.min).cwiseMin(request_.volume.max) - base;
 }
 
@@ -133,7 +139,8 @@ void PathProblem::advance(Flight& flight, const Vec3& wish) const {
   const VehicleLimits& vehicle = request_.vehicle;
   Vec3 bounded = limited(wish, vehicle.max_speed);
   if (std::abs(bounded.z()) > vehicle.max_climb) bounded *= vehicle.max_climb / std::abs(bounded.z());
-  const Vec3 change = limited(bounded - flight.velocity, settings_.acceleration_share * vehicle.max_acceleration * settings_.step);
+  const Vec3 change =
+      limited(bounded - flight.velocity, settings_.acceleration_share * vehicle.max_acceleration * settings_.step);
   flight.position += (flight.velocity + 0.5 * change) * settings_.step;
   flight.velocity += change;
 }
@@ -170,18 +177,21 @@ Cost PathProblem::cost_of_positions(std::span<const Vec3> positions) const {
   Cost cost;
   double length = 0.0;
   double arrival = 0.0;
+  double deviation = 0.0;
   for (int step = 0; step < steps_; ++step) {
     const Vec3& from = positions[index(step)];
     const Vec3& to = positions[index(step + 1)];
     length += (to - from).norm();
     if ((to - request_.target).squaredNorm() > kNear * kNear) arrival = (step + 1) * settings_.step;
+    deviation += (to - undisturbed(step + 1)).norm();
     cost.violation += distance_outside(request_.volume, to) * settings_.step;
     add_obstacles(step, from, to, cost);
   }
   const double rest = (request_.target - positions.back()).norm();
   if (arrival == horizon()) arrival += rest / request_.vehicle.cruise_speed;
   const double lost = std::max(0.0, arrival - undisturbed_time_);
-  cost.f[0] = length + rest + settings_.time_weight * request_.vehicle.cruise_speed * lost;
+  cost.f[0] = length + rest + settings_.time_weight * request_.vehicle.cruise_speed * lost +
+              settings_.deviation_weight * deviation / steps_;
 
   Vec3 direction = request_.velocity;
   const Vec3* corner = &positions[0];
@@ -254,7 +264,8 @@ void PathProblem::fly_to_target(TimedPath& path, Flight flight) const {
   for (double tail = 0.0; away(path.back()) && tail < kLongestTail; tail += settings_.step) {
     const Vec3 way = request_.target - flight.position;
     const double distance = way.norm();
-    const double speed = std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
+    const double speed =
+        std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
     const Vec3 before = flight.velocity;
     advance(flight, way * (speed / distance));
     path.back().acceleration = (flight.velocity - before) / settings_.step;

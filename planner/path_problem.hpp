@@ -26,16 +26,17 @@ struct PathRequest {
   double acceleration_trust = kInfinity;  ///< as in predict_position
 };
 
-/// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where undisturbed
-/// flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's axis (behind, or
-/// waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The vehicle follows with
-/// bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every instant; with all
-/// of them 0 it is undisturbed flight.
+/// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
+/// undisturbed flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's axis
+/// (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The vehicle
+/// follows with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every
+/// instant; with all of them 0 it is undisturbed flight.
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
-/// undisturbed flight, as length at cruise speed. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how
-/// deep, how long and how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same
-/// for the hard margin, and for leaving the volume.
+/// undisturbed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths the
+/// one at cruise speed wins. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and
+/// how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same for the hard
+/// margin, and for leaving the volume.
 class PathProblem final : public Problem {
  public:
   /// Precondition: step and time of the settings are positive, with at least one step in a leg.
@@ -58,8 +59,8 @@ class PathProblem final : public Problem {
 
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
   void imitate(const TimedPath& path, std::span<double> x) const;
-  /// Variables of a manoeuvre: `share` in [-1, 1] of the way ahead (or back), and metres left and up of the straight line,
-  /// kept for two thirds of the horizon.
+  /// Variables of a manoeuvre: `share` in [-1, 1] of the way ahead (or back), and metres left and up of the straight
+  /// line, kept for two thirds of the horizon.
   void manoeuvre(double share, double left, double up, std::span<double> x) const;
 
   [[nodiscard]] int steps() const { return steps_; }
@@ -73,7 +74,9 @@ class PathProblem final : public Problem {
   struct Flight {
     Vec3 position, velocity;
   };
-  [[nodiscard]] Vec3 undisturbed(int step) const { return frame_.origin + undisturbed_[static_cast<std::size_t>(step)] * frame_.axis; }
+  [[nodiscard]] Vec3 undisturbed(int step) const {
+    return frame_.origin + undisturbed_[static_cast<std::size_t>(step)] * frame_.axis;
+  }
   [[nodiscard]] Vec3 offset(std::span<const double> x, int k) const;
   /// Calls visit(step, flight) with the motion's state at the end of each step of the horizon.
   template <typename Visit>

@@ -26,7 +26,7 @@ struct Plan {
   TimedPath path;
   Verification verification;
   std::int64_t evaluations = 0;
-  int generations = 0;                       ///< repeats the plan together with the seed
+  int generations = 0;  ///< repeats the plan together with the seed
   bool deadline_reached = false;
   bool kept_previous = false;                ///< the plan before was kept
   std::vector<std::array<double, 2>> front;  ///< the first two objectives of the (first) front

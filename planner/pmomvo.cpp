@@ -14,7 +14,8 @@ void check(const OptimizerSettings& s, int objectives) {
     throw std::invalid_argument("population: " + std::to_string(s.population) + " leaves a slave of " +
                                 std::to_string(s.slaves) + " without a universe");
   }
-  if (s.iterations < 1) throw std::invalid_argument("iterations: " + std::to_string(s.iterations) + " is not at least 1");
+  if (s.iterations < 1)
+    throw std::invalid_argument("iterations: " + std::to_string(s.iterations) + " is not at least 1");
   if (s.sharing < 0) throw std::invalid_argument("sharing: " + std::to_string(s.sharing) + " is negative");
   if (s.archive <= objectives) {
     throw std::invalid_argument("archive: " + std::to_string(s.archive) + " does not hold the extremes of " +
@@ -50,7 +51,7 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
     // The iteration counter runs on over the cycles.
     const int stop = static_cast<int>(static_cast<std::int64_t>(budget.generations) * (cycle + 1) / cycles);
     if (stop == done) continue;
-    if (cycle > 0) share();
+    if (done > 0) share();  // cycles without an iteration have nothing to share
     pool.run(slaves, [&](std::uint32_t j) {
       for (int iteration = done; iteration < stop; ++iteration) {
         slaves_[j].iterate(static_cast<double>(iteration + 1) / budget.generations);

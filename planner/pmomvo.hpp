@@ -31,12 +31,12 @@ struct Front {
 /// What a run did.
 struct RunReport {
   std::int64_t evaluations = 0;
-  int generations = 0;           ///< done by every slave
+  int generations = 0;  ///< done by every slave
   bool deadline_reached = false;
 };
 
-/// The result depends on (problem, settings, seeds, seed, generations), not on the number of threads: slaves share nothing
-/// while they run, and the master works in the order of their numbers.
+/// The result depends on (problem, settings, seeds, seed, generations), not on the number of threads: slaves share
+/// nothing while they run, and the master works in the order of their numbers.
 ///
 /// m = 1 with l = 0 is MOMVO alone. Universes are dealt out evenly, at least one for each slave.
 class Pmomvo {
@@ -45,9 +45,9 @@ class Pmomvo {
   /// universe per slave, or an archive that does not hold the extremes.
   Pmomvo(const OptimizerSettings& settings, int dimension, int objectives);
 
-  /// Optimizes `problem` on the threads of `pool`. `initial` holds solutions, one after the other, to be placed among the
-  /// random initial universes, dealt out to the slaves in turn. `seed` and `stream` name the random numbers.
-  /// The front is valid until the next run. No allocation once the front has reached its largest size.
+  /// Optimizes `problem` on the threads of `pool`. `initial` holds solutions, one after the other, to be placed among
+  /// the random initial universes, dealt out to the slaves in turn. `seed` and `stream` name the random numbers. The
+  /// front is valid until the next run. No allocation once the front has reached its largest size.
   const Front& run(const Problem& problem, std::span<const double> initial, std::uint64_t seed, std::uint64_t stream,
                    const Budget& budget, WorkerPool& pool);
 
@@ -62,7 +62,7 @@ class Pmomvo {
   int dimension_;
   int objectives_;
   std::vector<Momvo> slaves_;
-  std::vector<double> shared_;         // representatives that the master sends back, one after the other
+  std::vector<double> shared_;  // representatives that the master sends back, one after the other
   std::vector<Cost> shared_costs_;
   Front front_;
   RunReport report_;

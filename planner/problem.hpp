@@ -8,13 +8,13 @@
 
 namespace jink::planner {
 
-/// A constrained multi-objective minimisation problem over a box. Implementations are immutable while they are optimized:
-/// evaluate() is called by several slaves at once and neither allocates nor locks.
+/// A constrained multi-objective minimisation problem over a box. Implementations are immutable while they are
+/// optimized: evaluate() is called by several slaves at once and neither allocates nor locks.
 class Problem {
  public:
   virtual ~Problem() = default;
   [[nodiscard]] virtual int dimension() const = 0;
-  [[nodiscard]] virtual int objectives() const = 0;              ///< 1 .. kMaxObjectives
+  [[nodiscard]] virtual int objectives() const = 0;                 ///< 1 .. kMaxObjectives
   [[nodiscard]] virtual std::span<const double> lower() const = 0;  ///< dimension() values
   [[nodiscard]] virtual std::span<const double> upper() const = 0;
   /// Costs of costs.size() solutions; `x` holds them one after the other, dimension() values each, within the box.

@@ -96,7 +96,8 @@ std::vector<int> topsis_order(std::span<const Cost> costs, int objectives, std::
     const std::vector<double> score = closeness(group, objectives, weights);
     std::vector<std::size_t> by_score(group.size());
     std::iota(by_score.begin(), by_score.end(), std::size_t{0});
-    std::stable_sort(by_score.begin(), by_score.end(), [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+    std::stable_sort(by_score.begin(), by_score.end(),
+                     [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
     const std::vector<int> members(order.begin() + static_cast<std::ptrdiff_t>(begin),
                                    order.begin() + static_cast<std::ptrdiff_t>(end));
     for (std::size_t i = 0; i < members.size(); ++i) order[begin + i] = members[by_score[i]];

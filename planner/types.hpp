@@ -24,14 +24,14 @@ struct Box {
 
 /// What a vehicle is and can do. The defaults are the Parrot AR.Drone 2.0's of config/vehicles/ardrone2.yaml.
 struct VehicleLimits {
-  double radius = 0.30;            ///< of the sphere that encloses the vehicle
-  double length = 0.52;            ///< l_uav of [Paper] Eq. (15)
-  double mass = 0.42;              ///< kg, [Paper] Eq. (1)
-  double max_speed = 5.0;          ///< Euclidean norm of the velocity
-  double cruise_speed = 3.0;       ///< flown where nothing asks for another speed
-  double max_acceleration = 6.0;   ///< Euclidean norm
-  double max_jerk = 30.0;          ///< Euclidean norm
-  double max_climb = 2.0;          ///< |vertical speed|, up and down
+  double radius = 0.30;           ///< of the sphere that encloses the vehicle
+  double length = 0.52;           ///< l_uav of [Paper] Eq. (15)
+  double mass = 0.42;             ///< kg, [Paper] Eq. (1)
+  double max_speed = 5.0;         ///< Euclidean norm of the velocity
+  double cruise_speed = 3.0;      ///< flown where nothing asks for another speed
+  double max_acceleration = 6.0;  ///< Euclidean norm
+  double max_jerk = 30.0;         ///< Euclidean norm
+  double max_climb = 2.0;         ///< |vertical speed|, up and down
 };
 
 /// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion.

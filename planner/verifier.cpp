@@ -19,8 +19,9 @@ struct RelativeMotion {
   [[nodiscard]] double speed(double t) const { return (p1 + 2.0 * t * p2).norm(); }
 };
 
-/// Sorted instants of [0, duration] between which the squared distance is monotone: the ends and every stationary point.
-/// The slope is a cubic; the two zeros of its derivative split it in monotone pieces, each with at most one root.
+/// Sorted instants of [0, duration] between which the squared distance is monotone: the ends and every stationary
+/// point. The slope is a cubic; the two zeros of its derivative split it in monotone pieces, each with at most one
+/// root.
 struct MonotonePieces {
   std::array<double, 5> t{};
   int count = 0;
@@ -36,7 +37,8 @@ struct MonotonePieces {
     if (c3 > 0.0 && discriminant > 0.0) {
       const double root = std::sqrt(discriminant);
       for (const double s : {(-c2 - root) / (3.0 * c3), (-c2 + root) / (3.0 * c3)}) {
-        if (s > split[static_cast<std::size_t>(splits - 1)] && s < m.duration) split[static_cast<std::size_t>(splits++)] = s;
+        if (s > split[static_cast<std::size_t>(splits - 1)] && s < m.duration)
+          split[static_cast<std::size_t>(splits++)] = s;
       }
     }
     split[static_cast<std::size_t>(splits)] = m.duration;
@@ -122,7 +124,10 @@ void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track,
   double t = a.t;
   while (t < end) {
     const double stop = (change > t && change < end) ? change : end;
-    const ObstacleAt obstacle(track, t - input.tracks_time, input.acceleration_trust);
+    // Rounding must not put the instant at which the acceleration ends before its end.
+    const double elapsed =
+        t < change ? t - input.tracks_time : std::max(t - input.tracks_time, input.acceleration_trust);
+    const ObstacleAt obstacle(track, elapsed, input.acceleration_trust);
     const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
                            -0.5 * obstacle.acceleration, stop - t};
     fold(m, t, input.vehicle_radius + track.radius, track.id, result);

@@ -34,8 +34,9 @@ struct VerifierInput {
   double until = kInfinity;               ///< path time up to which obstacles count
 };
 
-/// Minimum over all instants, not samples: between two points and the instants at which a prediction changes, the squared
-/// distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9 m. O(points · tracks).
+/// Minimum over all instants, not samples: between two points and the instants at which a prediction changes, the
+/// squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9 m. O(points ·
+/// tracks).
 Verification verify(const VerifierInput& input);
 
 }  // namespace jink::planner

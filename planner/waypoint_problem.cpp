@@ -30,7 +30,8 @@ void WaypointProblem::prepare(const Step& step, std::span<const Track> tracks) {
     const double moved = longest * (track.velocity.norm() + 0.5 * longest * track.acceleration.norm());
     const double touch = reach + moved + track.radius + vehicle_.radius + settings_.margin;
     // The paper's constraint sees the infinite line, so there every obstacle counts.
-    if (settings_.constraint == Constraint::kPaper || (track.position - step.from).norm() <= touch) near_.push_back(track);
+    if (settings_.constraint == Constraint::kPaper || (track.position - step.from).norm() <= touch)
+      near_.push_back(track);
   }
   find_narrow_passes(near_);
 }
@@ -78,9 +79,9 @@ void WaypointProblem::evaluate(std::span<const double> x, std::span<Cost> costs)
   const double steering_limit = settings_.steering_limit_deg * std::numbers::pi / 180.0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const Vec3 to = waypoint(x[2 * i], x[2 * i + 1]);
-    const double f1 = (to - step_.from).norm() + (step_.target - to).norm();              // Eq. (2)
-    const double f2 = angle_between(step_.direction, to - step_.from) - steering_limit;   // Eq. (3)
-    const double penalty = settings_.penalty * violation(to);                             // Eq. (17)
+    const double f1 = (to - step_.from).norm() + (step_.target - to).norm();             // Eq. (2)
+    const double f2 = angle_between(step_.direction, to - step_.from) - steering_limit;  // Eq. (3)
+    const double penalty = settings_.penalty * violation(to);                            // Eq. (17)
     costs[i] = {{f1 + penalty, f2 + penalty, 0.0}, 0.0};
   }
 }

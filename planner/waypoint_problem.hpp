@@ -16,28 +16,30 @@ namespace jink::planner {
 /// How fast a segment is flown: at cruise speed, slower where the climb limit asks for it. Seconds.
 double segment_duration(const Vec3& from, const Vec3& to, const VehicleLimits& vehicle);
 
-/// One step of the paper's planning: from waypoint w_i at time t_i to w_{i+1}, whose coordinate along the axis is given and
-/// whose two lateral coordinates are the decision variables.
+/// One step of the paper's planning: from waypoint w_i at time t_i to w_{i+1}, whose coordinate along the axis is given
+/// and whose two lateral coordinates are the decision variables.
 ///
-/// f1, Eq. (2): length of the next segment plus the straight rest to the target, m. f2, Eq. (3): |steering angle| − φ_max,
-/// rad, the angle between the segment before and this one. Constraints: the segment misses every obstacle, Eq. (14) or the
-/// swept test, and the virtual sphere of every narrow pass, Eq. (15). differs: g and h are penalised each for itself, since
-/// the sum in Eq. (17) lets one that holds pay for one that does not; radii are grown by the vehicle's.
+/// f1, Eq. (2): length of the next segment plus the straight rest to the target, m. f2, Eq. (3): |steering angle| −
+/// φ_max, rad, the angle between the segment before and this one. Constraints: the segment misses every obstacle, Eq.
+/// (14) or the swept test, and the virtual sphere of every narrow pass, Eq. (15). differs: g and h are penalised each
+/// for itself, since the sum in Eq. (17) lets one that holds pay for one that does not; radii are grown by the
+/// vehicle's.
 class WaypointProblem final : public Problem {
  public:
   struct Step {
     Vec3 from = Vec3::Zero();       ///< w_i
     Vec3 direction = Vec3::Zero();  ///< of the segment before, any length; at the start: towards the target
     Vec3 target = Vec3::Zero();
-    Vec3 base = Vec3::Zero();       ///< the next station's point on the straight line
-    Vec3 lateral1 = Vec3::Zero();   ///< unit vectors of the two variables, which are offsets from `base`, m
+    Vec3 base = Vec3::Zero();      ///< the next station's point on the straight line
+    Vec3 lateral1 = Vec3::Zero();  ///< unit vectors of the two variables, which are offsets from `base`, m
     Vec3 lateral2 = Vec3::Zero();
     std::array<double, 2> lower{};  ///< bounds of the offsets
     std::array<double, 2> upper{};
     Box volume;  ///< a waypoint that the bounds let out of it is moved to its nearest point
   };
 
-  WaypointProblem(const PaperSettings& settings, const VehicleLimits& vehicle) : settings_(settings), vehicle_(vehicle) {}
+  WaypointProblem(const PaperSettings& settings, const VehicleLimits& vehicle)
+      : settings_(settings), vehicle_(vehicle) {}
 
   /// Prepares one step. `tracks` are valid at the step's start time t_i. Keeps the obstacles that the step could touch.
   void prepare(const Step& step, std::span<const Track> tracks);

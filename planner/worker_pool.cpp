@@ -8,10 +8,18 @@ namespace jink::planner {
 namespace {
 
 // ticket: round (32 bits) | tasks of the round (16) | next task (16)
-constexpr std::uint64_t make_ticket(std::uint64_t round, std::uint64_t count) { return (round << 32U) | (count << 16U); }
-constexpr std::uint32_t ticket_next(std::uint64_t ticket) { return static_cast<std::uint32_t>(ticket & 0xffffU); }
-constexpr std::uint32_t ticket_count(std::uint64_t ticket) { return static_cast<std::uint32_t>((ticket >> 16U) & 0xffffU); }
-constexpr bool has_task(std::uint64_t ticket) { return ticket_next(ticket) < ticket_count(ticket); }
+constexpr std::uint64_t make_ticket(std::uint64_t round, std::uint64_t count) {
+  return (round << 32U) | (count << 16U);
+}
+constexpr std::uint32_t ticket_next(std::uint64_t ticket) {
+  return static_cast<std::uint32_t>(ticket & 0xffffU);
+}
+constexpr std::uint32_t ticket_count(std::uint64_t ticket) {
+  return static_cast<std::uint32_t>((ticket >> 16U) & 0xffffU);
+}
+constexpr bool has_task(std::uint64_t ticket) {
+  return ticket_next(ticket) < ticket_count(ticket);
+}
 
 // Rounds follow each other within microseconds; a sleep and a wake cost more than that.
 constexpr int kSpins = 2000;

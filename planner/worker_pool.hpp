@@ -5,15 +5,15 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <utility>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace jink::planner {
 
-/// run() may be called from one thread at a time. It neither allocates nor locks unless a task throws. Which thread runs
-/// which task is open: tasks write into slots of their own, and whoever merges does so by task number.
+/// run() may be called from one thread at a time. It neither allocates nor locks unless a task throws. Which thread
+/// runs which task is open: tasks write into slots of their own, and whoever merges does so by task number.
 class WorkerPool {
  public:
   /// `threads` >= 1, the caller included; 0: one for each core.
@@ -24,8 +24,8 @@ class WorkerPool {
 
   [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls task(i) once for each i in [0, count) and returns when all have returned. count <= 65535. The exception of the
-  /// lowest-numbered task that threw is thrown again here, after all tasks are done.
+  /// Calls task(i) once for each i in [0, count) and returns when all have returned. count <= 65535. The exception of
+  /// the lowest-numbered task that threw is thrown again here, after all tasks are done.
   template <typename Task>
   void run(std::uint32_t count, const Task& task) {
     run_erased(count, &task, [](const void* context, std::uint32_t i) { (*static_cast<const Task*>(context))(i); });

@@ -16,14 +16,22 @@ bridge::FlightMode bridge_mode(FlightMode mode) {
   switch (mode) {
     case FlightMode::kManual:
     case FlightMode::kAcro:
-    case FlightMode::kStabilized: return bridge::FlightMode::kManual;
-    case FlightMode::kAltitude: return bridge::FlightMode::kAltitude;
-    case FlightMode::kPosition: return bridge::FlightMode::kPosition;
-    case FlightMode::kTakeoff: return bridge::FlightMode::kTakeoff;
-    case FlightMode::kHold: return bridge::FlightMode::kHold;
-    case FlightMode::kReturn: return bridge::FlightMode::kReturn;
-    case FlightMode::kLand: return bridge::FlightMode::kLand;
-    case FlightMode::kOffboard: return bridge::FlightMode::kOffboard;
+    case FlightMode::kStabilized:
+      return bridge::FlightMode::kManual;
+    case FlightMode::kAltitude:
+      return bridge::FlightMode::kAltitude;
+    case FlightMode::kPosition:
+      return bridge::FlightMode::kPosition;
+    case FlightMode::kTakeoff:
+      return bridge::FlightMode::kTakeoff;
+    case FlightMode::kHold:
+      return bridge::FlightMode::kHold;
+    case FlightMode::kReturn:
+      return bridge::FlightMode::kReturn;
+    case FlightMode::kLand:
+      return bridge::FlightMode::kLand;
+    case FlightMode::kOffboard:
+      return bridge::FlightMode::kOffboard;
   }
   return bridge::FlightMode::kOther;
 }
@@ -64,11 +72,21 @@ class VirtualLink final : public bridge::VehicleLink {
   void request(bridge::Command command) override {
     Result result = Result::kUnsupported;
     switch (command) {
-      case bridge::Command::kArm: result = autopilot_.arm(); break;
-      case bridge::Command::kDisarm: result = autopilot_.disarm(); break;
-      case bridge::Command::kOffboard: result = autopilot_.set_mode(6); break;
-      case bridge::Command::kHold: result = autopilot_.hold(); break;
-      case bridge::Command::kLand: result = autopilot_.land(); break;
+      case bridge::Command::kArm:
+        result = autopilot_.arm();
+        break;
+      case bridge::Command::kDisarm:
+        result = autopilot_.disarm();
+        break;
+      case bridge::Command::kOffboard:
+        result = autopilot_.set_mode(6);
+        break;
+      case bridge::Command::kHold:
+        result = autopilot_.hold();
+        break;
+      case bridge::Command::kLand:
+        result = autopilot_.land();
+        break;
     }
     const bool accepted = result == Result::kAccepted;
     reports_.push_back({command, accepted, accepted ? "" : "result " + std::to_string(static_cast<int>(result))});
@@ -125,7 +143,8 @@ class Judge {
     last_ = position;
     last_t_ = t;
     if (sweep.min_clearance < 0.0) {
-      result_.flight.reason = "hit obstacle " + std::to_string(World::id(sweep.obstacle)) + " at t = " + std::to_string(sweep.t_min) + " s";
+      result_.flight.reason =
+          "hit obstacle " + std::to_string(World::id(sweep.obstacle)) + " at t = " + std::to_string(sweep.t_min) + " s";
       return bridge::Outcome::kCollision;
     }
     if (!world_.inside(position)) {
@@ -174,18 +193,21 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
   vehicle.limits = scenario.vehicle;
   vehicle.position = scenario.start;
   vehicle.airborne = true;
-  // The flight begins in the air wherever the start is, so the ground is out of reach; the world's floor is judged apart.
+  // The flight begins in the air wherever the start is, so the ground is out of reach; the world's floor is judged
+  // apart.
   vehicle.ground_height = std::min({0.0, scenario.start.z(), scenario.target.z()}) - kGroundBelow;
   vehicle.ready_delay = 0.0;
   vehicle.cascade.max_descent = scenario.vehicle.max_climb;
   Autopilot autopilot(vehicle);
   VirtualLink link(autopilot);
   VirtualTracks tracks(scenario.sensing, options.seed);
-  bridge::VirtualPlanner planner({settings.horizon, options.seed, options.threads}, 1e-3 * settings.companion.planner_latency_ms);
+  bridge::VirtualPlanner planner({settings.horizon, options.seed, options.threads},
+                                 1e-3 * settings.companion.planner_latency_ms);
   bridge::Companion companion(mission_of(scenario), settings, {link, tracks, planner, options.flight_observers});
 
   Judge judge(world, result);
-  const int steps_per_turn = std::max(1, static_cast<int>(std::lround(1.0 / (settings.companion.setpoint_rate_hz * VehicleModel::kStep))));
+  const int steps_per_turn =
+      std::max(1, static_cast<int>(std::lround(1.0 / (settings.companion.setpoint_rate_hz * VehicleModel::kStep))));
   bridge::Outcome ended = bridge::Outcome::kNone;
   double max_speed = 0.0;
   for (int step = 0;; ++step) {
@@ -195,7 +217,8 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
     ended = judge.watch(t, motion.position);
     tracks.step(t, world, motion.position);
     if (step % steps_per_turn == 0 || ended != bridge::Outcome::kNone) {
-      for (TruthObserver* observer : options.truth_observers) observer->on_truth(t, motion.position, motion.velocity, world);
+      for (TruthObserver* observer : options.truth_observers)
+        observer->on_truth(t, motion.position, motion.velocity, world);
     }
     if (ended != bridge::Outcome::kNone) break;
     if (step % steps_per_turn == 0 && !companion.step(t)) break;

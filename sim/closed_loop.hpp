@@ -34,13 +34,13 @@ struct ClosedLoopResult {
   double min_clearance = planner::kInfinity;  ///< from the vehicle's sphere to any true surface; infinite: no obstacles
 };
 
-/// Flies from rest in the air at `start`, t = 0, to the target, until it is reached, something is hit, the world is left or
-/// the time limit passes. Bit-identical for the same arguments at any thread count.
+/// Flies from rest in the air at `start`, t = 0, to the target, until it is reached, something is hit, the world is
+/// left or the time limit passes. Bit-identical for the same arguments at any thread count.
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options);
 
-/// The mission that stands for a scenario: one waypoint, the flight volume as geofence, arrival in hold. The floor is the
-/// volume's, or the lowest of ground, start and target where the scenario has no volume.
+/// The mission that stands for a scenario: one waypoint, the flight volume as geofence, arrival in hold. The floor is
+/// the volume's, or the lowest of ground, start and target where the scenario has no volume.
 config::Mission mission_of(const config::Scenario& scenario);
 
 }  // namespace jink::sim

@@ -62,19 +62,27 @@ class Teller final : public bridge::FlightObserver {
   double last_ = -1.0;
 };
 
-nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options, const config::Settings& settings) {
+nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
+                                      const config::Settings& settings) {
   const auto vector = [](const planner::Vec3& v) { return nlohmann::ordered_json::array({v.x(), v.y(), v.z()}); };
   const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
-  return {{"mission", mission.name}, {"seed", options.common.seed}, {"target", vector(mission.waypoints.back())},
-          {"vehicle", {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
-          {"world", bounded ? nlohmann::ordered_json{{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}} : nullptr},
-          {"parameters", parameters_of(settings)}};
+  return {
+      {"mission", mission.name},
+      {"seed", options.common.seed},
+      {"target", vector(mission.waypoints.back())},
+      {"vehicle",
+       {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
+      {"world",
+       bounded ? nlohmann::ordered_json{{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}}
+               : nullptr},
+      {"parameters", parameters_of(settings)}};
 }
 
 /// Turns the loop at the setpoints' rate until the flight is over; Ctrl-C brakes and hands over to HOLD.
 void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz) {
   const auto begun = std::chrono::steady_clock::now();
-  const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
+  const auto period =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
   auto next = begun;
   while (companion.step(clock.now())) {
     if (interrupted()) companion.interrupt(clock.now());
@@ -115,8 +123,9 @@ int run(const FlyOptions& options) {
   bridge::DdsTrackReader tracks(mission.dds_domain, clock);
   bridge::ThreadedPlanner planner({settings.horizon, options.common.seed, options.common.thread_count()}, clock);
   bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});
-  printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name, mission.waypoints.size(),
-                           mission.waypoints.size() == 1 ? "" : "s", mission.connection, mission.dds_domain, options.common.seed));
+  printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
+                           mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
+                           mission.dds_domain, options.common.seed));
   run_loop(companion, clock, settings.companion.setpoint_rate_hz);
 
   if (log) log->close();

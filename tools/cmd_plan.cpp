@@ -27,7 +27,8 @@ struct PlanOptions {
   std::string scenario;
   std::string mode = "horizon";
   std::string algorithm = "pmomvo";
-  int slaves = 0, sharing = -1, population = 0, iterations = 0, waypoints = 0;  // what was not given stays as configured
+  int slaves = 0, sharing = -1, population = 0, iterations = 0,
+      waypoints = 0;  // what was not given stays as configured
   double deadline_ms = 0.0;
 };
 
@@ -41,7 +42,8 @@ struct Knobs {
 };
 
 Knobs knobs(config::Settings& s, bool paper) {
-  if (paper) return {s.optimizer.slaves, s.optimizer.sharing, s.optimizer.population, s.optimizer.iterations, s.paper.waypoints};
+  if (paper)
+    return {s.optimizer.slaves, s.optimizer.sharing, s.optimizer.population, s.optimizer.iterations, s.paper.waypoints};
   return {s.horizon.slaves, s.horizon.sharing, s.horizon.population, s.horizon.generations, s.horizon.waypoints};
 }
 
@@ -57,7 +59,8 @@ void apply(const PlanOptions& options, Knobs k) {
   if (options.waypoints > 0) k.waypoints = options.waypoints;
   const auto [fewest, most] = options.mode == "paper" ? std::pair{2, 1000} : std::pair{1, 20};
   if (k.waypoints < fewest || k.waypoints > most) {
-    throw UsageError(fmt::format("--waypoints: Value {} not in range {} to {} in {} mode", k.waypoints, fewest, most, options.mode));
+    throw UsageError(
+        fmt::format("--waypoints: Value {} not in range {} to {} in {} mode", k.waypoints, fewest, most, options.mode));
   }
   if (k.population < k.slaves) {
     throw UsageError(fmt::format("--population: {} leaves one of {} slaves without a universe; it is to be {} or more",
@@ -73,15 +76,18 @@ planner::Box volume_of(const config::Scenario& scenario) {
   return box;
 }
 
-planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& scenario, const config::Settings& settings,
-                            const std::vector<planner::Track>& tracks, planner::WorkerPool& pool, const Printer& printer) {
-  const auto deadline = options.deadline_ms > 0.0
-                            ? std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                                                     std::chrono::duration<double, std::milli>(options.deadline_ms))
-                            : planner::Budget::Time::max();
+planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& scenario,
+                            const config::Settings& settings, const std::vector<planner::Track>& tracks,
+                            planner::WorkerPool& pool, const Printer& printer) {
+  const auto deadline =
+      options.deadline_ms > 0.0
+          ? std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                   std::chrono::duration<double, std::milli>(options.deadline_ms))
+          : planner::Budget::Time::max();
   if (options.mode == "paper") {
-    const planner::PaperRequest request{scenario.start,     scenario.target, volume_of(scenario),   scenario.vehicle, tracks,
-                                        settings.optimizer, settings.paper,  options.common.seed, deadline};
+    const planner::PaperRequest request{scenario.start, scenario.target,    volume_of(scenario), scenario.vehicle,
+                                        tracks,         settings.optimizer, settings.paper,      options.common.seed,
+                                        deadline};
     if (planner::effective_axis(request) != settings.paper.axis) {
       printer.line("note: the mission is steep in world X, so the waypoints are placed along the path's own axis");
     }
@@ -134,23 +140,37 @@ int run(PlanOptions options) {
   const double slr = planner::straight_line_rate(length, straight);
   Json front = Json::array();
   for (const auto& f : plan.front) front.push_back({f[0], f[1]});
-  write_json(options.common.json,
-             {{"format", "jink-plan/1"}, {"scenario", scenario.name}, {"mode", options.mode}, {"algorithm", options.algorithm},
-              {"seed", options.common.seed}, {"threads", pool.threads()}, {"slaves", k.slaves}, {"sharing", k.sharing},
-              {"population", k.population}, {"iterations", k.iterations}, {"outcome", outcome}, {"path", path_json(plan.path)},
-              {"path_length", length}, {"straight_length", straight}, {"slr", finite_or_null(slr)},
-              {"flight_time_s", flight_time}, {"min_clearance", finite_or_null(plan.verification.min_clearance)},
-              {"evaluations", plan.evaluations}, {"planning_time_s", seconds}, {"front", front}});
+  write_json(options.common.json, {{"format", "jink-plan/1"},
+                                   {"scenario", scenario.name},
+                                   {"mode", options.mode},
+                                   {"algorithm", options.algorithm},
+                                   {"seed", options.common.seed},
+                                   {"threads", pool.threads()},
+                                   {"slaves", k.slaves},
+                                   {"sharing", k.sharing},
+                                   {"population", k.population},
+                                   {"iterations", k.iterations},
+                                   {"outcome", outcome},
+                                   {"path", path_json(plan.path)},
+                                   {"path_length", length},
+                                   {"straight_length", straight},
+                                   {"slr", finite_or_null(slr)},
+                                   {"flight_time_s", flight_time},
+                                   {"min_clearance", finite_or_null(plan.verification.min_clearance)},
+                                   {"evaluations", plan.evaluations},
+                                   {"planning_time_s", seconds},
+                                   {"front", front}});
   printer.line(fmt::format("scenario {}: {} ({} mode, {}, seed {}, {} threads)", scenario.name, outcome, options.mode,
                            options.algorithm, options.common.seed, pool.threads()));
-  printer.line(fmt::format("  path {:.3f} m of straight {:.3f} m (SLR {:.5f}), flight time {:.2f} s, {} points", length, straight, slr,
-                           flight_time, plan.path.size()));
+  printer.line(fmt::format("  path {:.3f} m of straight {:.3f} m (SLR {:.5f}), flight time {:.2f} s, {} points", length,
+                           straight, slr, flight_time, plan.path.size()));
   const bool obstacles = std::isfinite(plan.verification.min_clearance);
-  printer.line(fmt::format("  smallest clearance {}; {} evaluations in {:.1f} ms",
-                           obstacles ? fmt::format("{:.3f} m at t = {:.2f} s, to obstacle {}", plan.verification.min_clearance,
-                                                   plan.verification.t_min_clearance, plan.verification.nearest_id)
-                                     : "unlimited, no obstacles",
-                           plan.evaluations, 1e3 * seconds));
+  printer.line(
+      fmt::format("  smallest clearance {}; {} evaluations in {:.1f} ms",
+                  obstacles ? fmt::format("{:.3f} m at t = {:.2f} s, to obstacle {}", plan.verification.min_clearance,
+                                          plan.verification.t_min_clearance, plan.verification.nearest_id)
+                            : "unlimited, no obstacles",
+                  plan.evaluations, 1e3 * seconds));
   return outcome == "reached" ? kExitReached : kExitFailed;
 }
 
@@ -161,16 +181,22 @@ Subcommand add_plan(CLI::App& jink) {
   const auto options = std::make_shared<PlanOptions>();
   app->add_option("SCENARIO", options->scenario, "scenario file")->required();
   app->add_option("--mode", options->mode, "horizon: the remaining path at once; paper: one waypoint after the other")
-      ->check(CLI::IsMember({"paper", "horizon"}))->capture_default_str();
+      ->check(CLI::IsMember({"paper", "horizon"}))
+      ->capture_default_str();
   app->add_option("--algorithm", options->algorithm, "pmomvo, or momvo (one slave, no sharing)")
-      ->check(CLI::IsMember({"pmomvo", "momvo"}))->capture_default_str();
+      ->check(CLI::IsMember({"pmomvo", "momvo"}))
+      ->capture_default_str();
   app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->check(CLI::Range(1, 64));
   app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")->check(CLI::Range(0, 1000));
-  app->add_option("--population", options->population, "universes of all slaves together, 1 to 100000")->check(CLI::Range(1, 100000));
-  app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")->check(CLI::Range(1, 1000000));
-  app->add_option("--waypoints", options->waypoints, "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
+  app->add_option("--population", options->population, "universes of all slaves together, 1 to 100000")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")
+      ->check(CLI::Range(1, 1000000));
+  app->add_option("--waypoints", options->waypoints,
+                  "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
       ->check(CLI::Range(1, 1000));
-  app->add_option("--deadline-ms", options->deadline_ms, "stop planning after so many ms of wall time (default: no deadline)")
+  app->add_option("--deadline-ms", options->deadline_ms,
+                  "stop planning after so many ms of wall time (default: no deadline)")
       ->check(CLI::Range(0.001, 1e9));
   options->common.add_to(*app);
   return {app, [options] { return run(*options); }};

@@ -25,7 +25,8 @@ int run(const ReplayOptions& options) {
   if (std::filesystem::path(options.scenario).extension() == ".jsonl") {
     throw UsageError(options.scenario + ": replaying a flight log is not built yet; give a scenario file (.yaml)");
   }
-  if (!options.report.empty() && options.log.empty()) throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
+  if (!options.report.empty() && options.log.empty())
+    throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
 
   sim::ClosedLoopOptions loop;
@@ -40,7 +41,8 @@ int run(const ReplayOptions& options) {
   const sim::ClosedLoopResult result = sim::fly_closed_loop(scenario, settings, loop);
   if (log) log->close();
 
-  const auto summary = flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
+  const auto summary =
+      flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
   write_json(options.common.json, summary);
   printer.line(describe_flight(summary));
   if (!options.report.empty()) {

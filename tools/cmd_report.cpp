@@ -29,7 +29,8 @@ int run(const ReportOptions& options) {
   try {
     const ReportResult result = write_report(options.log, html, options.summary.empty() ? nullptr : &summary);
     fmt::print("{}\n", std::filesystem::absolute(html).string());
-    if (result.skipped > 0) fmt::print("{} of {} lines could not be read and were left out\n", result.skipped, result.lines);
+    if (result.skipped > 0)
+      fmt::print("{} of {} lines could not be read and were left out\n", result.skipped, result.lines);
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
   }

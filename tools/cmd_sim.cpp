@@ -40,13 +40,19 @@ struct SimOptions {
   bool no_tracks = false;
 };
 
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+double unix_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 /// The simulator as one thing to step: world, sensing, and, unless it is left out, the vehicle with its endpoint.
 class Simulator {
  public:
   Simulator(const SimOptions& options, const config::Scenario& scenario, const Printer& printer, FlightLog* log)
-      : options_(options), printer_(printer), log_(log), world_(scenario), sensing_(scenario.sensing, options.common.seed),
+      : options_(options),
+        printer_(printer),
+        log_(log),
+        world_(scenario),
+        sensing_(scenario.sensing, options.common.seed),
         last_(scenario.start) {
     if (!options.no_tracks) writer_ = std::make_unique<bridge::DdsTrackWriter>(options.domain);
     if (!options.no_vehicle) {
@@ -82,7 +88,9 @@ class Simulator {
   }
 
   [[nodiscard]] double now() const { return now_; }
-  [[nodiscard]] bool failed() const { return flight_.outcome == bridge::Outcome::kCollision || flight_.outcome == bridge::Outcome::kLeftWorld; }
+  [[nodiscard]] bool failed() const {
+    return flight_.outcome == bridge::Outcome::kCollision || flight_.outcome == bridge::Outcome::kLeftWorld;
+  }
 
   [[nodiscard]] std::string status() const {
     const int readers = writer_ ? writer_->readers() : 0;
@@ -98,7 +106,8 @@ class Simulator {
     bridge::FlightSummary flight = flight_;
     if (flight.outcome == bridge::Outcome::kNone) {
       flight.outcome = bridge::Outcome::kAborted;
-      flight.reason = clock_start_ ? "ended before the target was reached" : "the vehicle never came to the start in OFFBOARD";
+      flight.reason =
+          clock_start_ ? "ended before the target was reached" : "the vehicle never came to the start in OFFBOARD";
     }
     return flight;
   }
@@ -111,12 +120,18 @@ class Simulator {
 
   [[nodiscard]] std::string mode_text() const {
     switch (autopilot_->mode()) {
-      case sim::FlightMode::kOffboard: return autopilot_->armed() ? "OFFBOARD" : "OFFBOARD (disarmed)";
-      case sim::FlightMode::kHold: return autopilot_->armed() ? "HOLD" : "disarmed";
-      case sim::FlightMode::kLand: return "LAND";
-      case sim::FlightMode::kTakeoff: return "TAKEOFF";
-      case sim::FlightMode::kReturn: return "RETURN";
-      default: return autopilot_->armed() ? "other mode" : "disarmed";
+      case sim::FlightMode::kOffboard:
+        return autopilot_->armed() ? "OFFBOARD" : "OFFBOARD (disarmed)";
+      case sim::FlightMode::kHold:
+        return autopilot_->armed() ? "HOLD" : "disarmed";
+      case sim::FlightMode::kLand:
+        return "LAND";
+      case sim::FlightMode::kTakeoff:
+        return "TAKEOFF";
+      case sim::FlightMode::kReturn:
+        return "RETURN";
+      default:
+        return autopilot_->armed() ? "other mode" : "disarmed";
     }
   }
 
@@ -140,7 +155,8 @@ class Simulator {
     sim::TrackMessage message;
     while (sensing_.poll(now, message)) {
       const double age = (now - message.stamp) / options_.speed;
-      if (writer_ && !writer_->publish(message.tracks, unix_now() - age)) say("publish_failed", "a track message could not be published");
+      if (writer_ && !writer_->publish(message.tracks, unix_now() - age))
+        say("publish_failed", "a track message could not be published");
     }
   }
 
@@ -202,8 +218,9 @@ void run_in_real_time(Simulator& simulator, const SimOptions& options, const Pri
     simulator.step(step);
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;
     if (step > 0 && step % period == 0) live ? printer.live(simulator.status()) : printer.line(simulator.status());
-    std::this_thread::sleep_until(begun + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(
-                                              (step + 1) * sim::VehicleModel::kStep / options.speed)));
+    std::this_thread::sleep_until(
+        begun + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                    std::chrono::duration<double>((step + 1) * sim::VehicleModel::kStep / options.speed)));
   }
 }
 
@@ -213,40 +230,56 @@ int run(const SimOptions& options) {
   const config::Scenario scenario = config::load_scenario(options.scenario);
   catch_signals();
   std::unique_ptr<FlightLog> log;
-  if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
+  if (!options.log.empty())
+    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
   Simulator simulator(options, scenario, printer, log.get());
-  printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
-                           options.no_tracks ? ", not told" : fmt::format(" as {} on DDS domain {}", bridge::kTracksTopic, options.domain),
-                           options.common.seed));
+  printer.line(fmt::format(
+      "scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
+      options.no_tracks ? ", not told" : fmt::format(" as {} on DDS domain {}", bridge::kTracksTopic, options.domain),
+      options.common.seed));
   if (!options.no_vehicle) {
-    printer.line(fmt::format("autopilot: MAVLink from UDP {} to 127.0.0.1:{} (companion) and :14550 (ground station), system {}",
-                             14580 + options.instance, 14540 + options.instance, options.instance + 1));
+    printer.line(
+        fmt::format("autopilot: MAVLink from UDP {} to 127.0.0.1:{} (companion) and :14550 (ground station), system {}",
+                    14580 + options.instance, 14540 + options.instance, options.instance + 1));
   }
   printer.line("Ctrl-C ends it");
   run_in_real_time(simulator, options, printer);
   if (log) log->close();
   if (options.no_vehicle) return kExitReached;
-  const auto summary = flight_summary("scenario", scenario.name, options.common.seed, simulator.summary(), simulator.min_clearance());
+  const auto summary =
+      flight_summary("scenario", scenario.name, options.common.seed, simulator.summary(), simulator.min_clearance());
   write_json(options.common.json, summary);
-  printer.line(fmt::format("scenario {}: {} ({}), smallest clearance {:.2f} m", scenario.name, summary["outcome"].get<std::string>(),
-                           summary["reason"].get<std::string>(), simulator.min_clearance()));
+  printer.line(fmt::format("scenario {}: {} ({}), smallest clearance {:.2f} m", scenario.name,
+                           summary["outcome"].get<std::string>(), summary["reason"].get<std::string>(),
+                           simulator.min_clearance()));
   return simulator.failed() ? kExitFailed : kExitReached;
 }
 
 }  // namespace
 
 Subcommand add_sim(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand("sim", "simulate a PX4-style vehicle on UDP and the scenario's obstacles on DDS, without a screen");
+  CLI::App* app = jink.add_subcommand(
+      "sim", "simulate a PX4-style vehicle on UDP and the scenario's obstacles on DDS, without a screen");
   const auto options = std::make_shared<SimOptions>();
   app->add_option("SCENARIO", options->scenario, "scenario file")->required();
-  app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")->check(CLI::Range(0.5, 20.0))->capture_default_str();
-  app->add_option("--clock", options->clock, "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
-      ->check(CLI::IsMember({"start", "immediate"}))->capture_default_str();
-  app->add_flag("--no-vehicle", options->no_vehicle, "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
+  app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
+      ->check(CLI::Range(0.5, 20.0))
+      ->capture_default_str();
+  app->add_option("--clock", options->clock,
+                  "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
+      ->check(CLI::IsMember({"start", "immediate"}))
+      ->capture_default_str();
+  app->add_flag("--no-vehicle", options->no_vehicle,
+                "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
   app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer tells of the obstacles");
-  app->add_option("--domain", options->domain, "DDS domain, 0 to 232")->check(CLI::Range(0, 232))->capture_default_str();
-  app->add_option("--instance", options->instance, "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9")->check(CLI::Range(0, 9))->capture_default_str();
-  app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")->check(CLI::Range(0.1, 1e6));
+  app->add_option("--domain", options->domain, "DDS domain, 0 to 232")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  app->add_option("--instance", options->instance, "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9")
+      ->check(CLI::Range(0, 9))
+      ->capture_default_str();
+  app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
+      ->check(CLI::Range(0.1, 1e6));
   app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)");
   options->common.add_to(*app);
   return {app, [options] { return run(*options); }};

@@ -24,21 +24,24 @@ constexpr std::int64_t kMostThreads = 256;
 
 void CommonOptions::add_to(CLI::App& app) {
   app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
-      ->check([](const std::string& text) {
-        const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-        return digits ? std::string() : "Value " + text + " is not a whole number from 0 to 18446744073709551615";
-      }, "")
+      ->check(
+          [](const std::string& text) {
+            const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            return digits ? std::string() : "Value " + text + " is not a whole number from 0 to 18446744073709551615";
+          },
+          "")
       ->capture_default_str();
   app.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
       ->check(CLI::Range(std::int64_t{1}, kMostThreads));
   app.add_option("--config", config, "planner parameters (default: config/planner.yaml)");
-  app.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated")->allow_extra_args(false);
+  app.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated")
+      ->allow_extra_args(false);
   app.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr");
 }
 
 config::Settings CommonOptions::settings() const {
-  return config::load_settings(config.empty() ? config::config_folder() / "planner.yaml" : std::filesystem::path(config),
-                               overrides);
+  return config::load_settings(
+      config.empty() ? config::config_folder() / "planner.yaml" : std::filesystem::path(config), overrides);
 }
 
 int CommonOptions::thread_count() const {
@@ -52,7 +55,9 @@ void Printer::line(const std::string& text) const {
   std::fflush(file_);
 }
 
-bool Printer::terminal() const { return isatty(fileno(file_)) == 1; }
+bool Printer::terminal() const {
+  return isatty(fileno(file_)) == 1;
+}
 
 void Printer::live(const std::string& text) const {
   if (!terminal()) return;
@@ -89,6 +94,8 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupted() { return g_interrupted.load(); }
+bool interrupted() {
+  return g_interrupted.load();
+}
 
 }  // namespace jink::tools

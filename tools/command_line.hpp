@@ -53,8 +53,8 @@ class Printer {
   mutable bool live_ = false;
 };
 
-/// Writes a summary as one object: to stdout for "-", else to the file, which appears whole or not at all. Does nothing for
-/// an empty name. Throws UsageError.
+/// Writes a summary as one object: to stdout for "-", else to the file, which appears whole or not at all. Does nothing
+/// for an empty name. Throws UsageError.
 void write_json(const std::string& file, const nlohmann::ordered_json& summary);
 
 /// From now on SIGINT and SIGTERM set a flag instead of ending the process.

@@ -10,7 +10,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector(const planner::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json vector(const planner::Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
 
 }  // namespace
 
@@ -22,16 +24,25 @@ FlightLog::FlightLog(const std::filesystem::path& file, Json header) : file_(fil
 }
 
 void FlightLog::on_state(double t, const bridge::VehicleState& state) {
-  write({{"type", "state"}, {"t", t}, {"p", vector(state.position)}, {"v", vector(state.velocity)},
-         {"armed", state.armed}, {"mode", bridge::to_string(state.mode)}});
+  write({{"type", "state"},
+         {"t", t},
+         {"p", vector(state.position)},
+         {"v", vector(state.velocity)},
+         {"armed", state.armed},
+         {"mode", bridge::to_string(state.mode)}});
 }
 
 void FlightLog::on_tracks(double t, const std::vector<planner::Track>& tracks) {
   Json list = Json::array();
   for (const planner::Track& track : tracks) {
-    list.push_back({{"id", track.id}, {"p", vector(track.position)}, {"v", vector(track.velocity)},
-                    {"a", vector(track.acceleration)}, {"radius", track.radius},
-                    {"position_sigma", track.position_sigma}, {"velocity_sigma", track.velocity_sigma}, {"age", track.age}});
+    list.push_back({{"id", track.id},
+                    {"p", vector(track.position)},
+                    {"v", vector(track.velocity)},
+                    {"a", vector(track.acceleration)},
+                    {"radius", track.radius},
+                    {"position_sigma", track.position_sigma},
+                    {"velocity_sigma", track.velocity_sigma},
+                    {"age", track.age}});
   }
   write({{"type", "tracks"}, {"t", t}, {"tracks", std::move(list)}});
 }
@@ -41,25 +52,40 @@ void FlightLog::on_plan(double t, const bridge::PlanResult& result) {
   for (const planner::TimedPoint& point : result.plan.path) {
     path.push_back({result.job.start + point.t, point.position.x(), point.position.y(), point.position.z()});
   }
-  write({{"type", "plan"}, {"t", t}, {"path", std::move(path)}, {"ms", result.ms},
-         {"status", planner::to_string(result.plan.status)}, {"kept", result.plan.kept_previous},
-         {"number", result.job.number}, {"generations", result.plan.generations}, {"missed", result.missed}});
+  write({{"type", "plan"},
+         {"t", t},
+         {"path", std::move(path)},
+         {"ms", result.ms},
+         {"status", planner::to_string(result.plan.status)},
+         {"kept", result.plan.kept_previous},
+         {"number", result.job.number},
+         {"generations", result.plan.generations},
+         {"missed", result.missed}});
 }
 
 void FlightLog::on_setpoint(double t, const bridge::Setpoint& setpoint) {
-  write({{"type", "setpoint"}, {"t", t}, {"p", vector(setpoint.position)}, {"v", vector(setpoint.velocity)},
-         {"a", vector(setpoint.acceleration)}, {"yaw", setpoint.yaw}});
+  write({{"type", "setpoint"},
+         {"t", t},
+         {"p", vector(setpoint.position)},
+         {"v", vector(setpoint.velocity)},
+         {"a", vector(setpoint.acceleration)},
+         {"yaw", setpoint.yaw}});
 }
 
 void FlightLog::on_event(double t, std::string_view name, const std::string& detail) {
   write({{"type", "event"}, {"t", t}, {"name", name}, {"detail", detail}});
 }
 
-void FlightLog::on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity, const sim::World& world) {
+void FlightLog::on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity,
+                         const sim::World& world) {
   write({{"type", "truth"}, {"t", t}, {"p", vector(position)}, {"v", vector(velocity)}});
   for (int i = 0; i < world.obstacle_count(); ++i) {
     const planner::Sphere sphere = world.sphere(i, t);
-    write({{"type", "obstacles"}, {"t", t}, {"id", sim::World::id(i)}, {"p", vector(sphere.center)}, {"radius", sphere.radius}});
+    write({{"type", "obstacles"},
+           {"t", t},
+           {"id", sim::World::id(i)},
+           {"p", vector(sphere.center)},
+           {"radius", sphere.radius}});
   }
 }
 

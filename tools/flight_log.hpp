@@ -32,7 +32,8 @@ class FlightLog final : public bridge::FlightObserver, public sim::TruthObserver
   void on_plan(double t, const bridge::PlanResult& result) override;
   void on_setpoint(double t, const bridge::Setpoint& setpoint) override;
   void on_event(double t, std::string_view name, const std::string& detail) override;
-  void on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity, const sim::World& world) override;
+  void on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity,
+                const sim::World& world) override;
 
   /// Flushes. Throws std::runtime_error where not all could be written (a full disk).
   void close();

@@ -29,14 +29,16 @@ int run(int argc, char** argv) {
   jink.footer(kFooter);
   jink.set_version_flag("--version", std::string("jink ") + JINK_VERSION);
   jink.require_subcommand(1);
-  const std::vector<Subcommand> commands{add_plan(jink), add_replay(jink), add_sim(jink), add_fly(jink), add_report(jink)};
+  const std::vector<Subcommand> commands{add_plan(jink), add_replay(jink), add_sim(jink), add_fly(jink),
+                                         add_report(jink)};
   const auto names = [&] {
     std::string list;
     for (const Subcommand& c : commands) list += (list.empty() ? "" : ", ") + c.app->get_name();
     return list;
   };
   const auto known = [&](const std::string& name) {
-    return std::any_of(commands.begin(), commands.end(), [&](const Subcommand& c) { return c.app->get_name() == name; });
+    return std::any_of(commands.begin(), commands.end(),
+                       [&](const Subcommand& c) { return c.app->get_name() == name; });
   };
   if (argc > 1 && argv[1][0] != '-' && !known(argv[1])) {
     return complain("there is no command '" + std::string(argv[1]) + "'; the commands are " + names());
@@ -48,7 +50,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return complain(std::string(error.what()) + " (see `jink --help`)");
   }
-  const auto chosen = std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
+  const auto chosen =
+      std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
   return chosen->run();
 }
 

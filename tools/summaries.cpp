@@ -19,7 +19,9 @@ Json percentiles_json(const std::vector<double>& values) {
   return {{"p50", p->p50}, {"p99", p->p99}, {"max", p->max}};
 }
 
-Json vector(const planner::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json vector(const planner::Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
 
 std::string number(const Json& value, const char* unit) {
   return value.is_number() ? fmt::format("{:.2f} {}", value.get<double>(), unit) : std::string("unknown");
@@ -27,7 +29,9 @@ std::string number(const Json& value, const char* unit) {
 
 }  // namespace
 
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json flight_summary(const std::string& kind, const std::string& name, std::uint64_t seed,
                     const bridge::FlightSummary& flight, std::optional<double> min_clearance) {
@@ -53,10 +57,13 @@ Json flight_summary(const std::string& kind, const std::string& name, std::uint6
 }
 
 std::string describe_flight(const Json& s) {
-  const std::string name = s.contains("scenario") ? "scenario " + s["scenario"].get<std::string>() : "mission " + s["mission"].get<std::string>();
-  std::string text = fmt::format("{}: {} ({})\n", name, s["outcome"].get<std::string>(), s["reason"].get<std::string>());
-  text += fmt::format("  flown {} in {}, straight {}; fastest {}\n", number(s["path_length"], "m"), number(s["flight_time_s"], "s"),
-                      number(s["straight_length"], "m"), number(s["max_speed"], "m/s"));
+  const std::string name = s.contains("scenario") ? "scenario " + s["scenario"].get<std::string>()
+                                                  : "mission " + s["mission"].get<std::string>();
+  std::string text =
+      fmt::format("{}: {} ({})\n", name, s["outcome"].get<std::string>(), s["reason"].get<std::string>());
+  text +=
+      fmt::format("  flown {} in {}, straight {}; fastest {}\n", number(s["path_length"], "m"),
+                  number(s["flight_time_s"], "s"), number(s["straight_length"], "m"), number(s["max_speed"], "m/s"));
   if (!s["min_clearance"].is_null()) text += fmt::format("  smallest clearance {}\n", number(s["min_clearance"], "m"));
   text += fmt::format("  {} plans, {} blocked, {} late; plan time p50 {}, p99 {}; track to setpoint p50 {}, p99 {}",
                       s["plans"].get<std::uint64_t>(), s["blocked_plans"].get<std::uint64_t>(),
@@ -67,9 +74,15 @@ std::string describe_flight(const Json& s) {
 }
 
 Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const config::Settings& settings) {
-  Json header{{"scenario", scenario.name}, {"seed", seed}, {"start", vector(scenario.start)}, {"target", vector(scenario.target)},
+  Json header{{"scenario", scenario.name},
+              {"seed", seed},
+              {"start", vector(scenario.start)},
+              {"target", vector(scenario.target)},
               {"time_limit", scenario.time_limit},
-              {"vehicle", {{"name", scenario.vehicle_name}, {"radius", scenario.vehicle.radius}, {"max_speed", scenario.vehicle.max_speed}}},
+              {"vehicle",
+               {{"name", scenario.vehicle_name},
+                {"radius", scenario.vehicle.radius},
+                {"max_speed", scenario.vehicle.max_speed}}},
               {"world", nullptr}};
   if (scenario.world) header["world"] = {{"min", vector(scenario.world->min)}, {"max", vector(scenario.world->max)}};
   header["parameters"] = parameters_of(settings);

@@ -11,7 +11,8 @@
 
 namespace jink::tools {
 
-/// `kind` is "scenario" or "mission". `min_clearance` is null where the true motion is not known or there is no obstacle.
+/// `kind` is "scenario" or "mission". `min_clearance` is null where the true motion is not known or there is no
+/// obstacle.
 nlohmann::ordered_json flight_summary(const std::string& kind, const std::string& name, std::uint64_t seed,
                                       const bridge::FlightSummary& flight, std::optional<double> min_clearance);
 
@@ -19,7 +20,8 @@ nlohmann::ordered_json flight_summary(const std::string& kind, const std::string
 std::string describe_flight(const nlohmann::ordered_json& summary);
 
 /// What a log's header says of a scenario: name, seed, start, target, vehicle, world, parameters.
-nlohmann::ordered_json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const config::Settings& settings);
+nlohmann::ordered_json scenario_header(const config::Scenario& scenario, std::uint64_t seed,
+                                       const config::Settings& settings);
 
 /// A number for JSON: null where it is not finite.
 nlohmann::ordered_json finite_or_null(double value);

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/path_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "planner/obstacle_motion.hpp"
+#include "planner/random.hpp"
+
+namespace jink::planner {
+namespace {
+
+PathRequest request(const Vec3& target = {40, 0, 2}) {
+  PathRequest r;
+  r.position = {0, 0, 2};
+  r.target = target;
+  return r;
+}
+
+Track sphere(const Vec3& position, const Vec3& velocity, double radius = 0.5) {
+  Track track;
+  track.position = position;
+  track.velocity = velocity;
+  track.radius = radius;
+  return track;
+}
+
+Vec3 random_vector(RandomStream& random, double range) {
+  const double x = random.uniform(-range, range);
+  const double y = random.uniform(-range, range);
+  return {x, y, random.uniform(-range, range)};
+}
+
+std::vector<double> random_variables(RandomStream& random, const PathProblem& problem, double range = 1.0) {
+  std::vector<double> x(static_cast<std::size_t>(problem.dimension()));
+  for (double& value : x) value = random.uniform(-range, range);
+  return x;
+}
+
+std::vector<double> zeros(const PathProblem& problem) {
+  return std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0);
+}
+
+Cost evaluate(const PathProblem& problem, std::span<const double> x) {
+  Cost cost;
+  problem.evaluate(x, {&cost, 1});
+  return cost;
+}
+
+TEST(PathProblem, HasThreeVariablesForEachWaypoint) {
+  const PathProblem problem{HorizonSettings{}};
+  EXPECT_EQ(problem.dimension(), 18);
+  EXPECT_EQ(problem.objectives(), 3);
+  EXPECT_EQ(problem.steps(), 60);
+  EXPECT_DOUBLE_EQ(problem.horizon(), 6.0);
+  for (const double v : problem.lower()) EXPECT_EQ(v, -1.0);
+  for (const double v : problem.upper()) EXPECT_EQ(v, 1.0);
+}
+
+TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
+  for (const Vec3& target : {Vec3(20, 0, 2), Vec3(-12, 9, 2), Vec3(0, 0, 12), Vec3(12, 0, 11)}) {
+    PathProblem problem{HorizonSettings{}};
+    PathRequest r = request(target);
+    problem.prepare(r);
+    const TimedPath path = problem.motion(zeros(problem));
+    const PathFrame frame(r.position, target);
+    const double cruise = std::min(3.0, 2.0 / std::max(1e-9, std::abs(frame.axis.z())));
+    double fastest = 0.0;
+    double along = -1e-9;
+    for (const TimedPoint& point : path) {
+      const Vec3 q = frame.from_enu(point.position);
+      EXPECT_LT(std::hypot(q.y(), q.z()), 1e-9);
+      EXPECT_GE(q.x(), along);  // never back, never beyond the target
+      EXPECT_LE(q.x(), frame.length + 1e-9);
+      along = q.x();
+      fastest = std::max(fastest, point.velocity.norm());
+      if (point.t > 2.0 && frame.length - q.x() > 4.0) EXPECT_NEAR(point.velocity.norm(), cruise, 0.05);
+    }
+    EXPECT_LE(fastest, cruise + 0.1);
+    EXPECT_EQ(path.back().position, target);
+    EXPECT_EQ(path.back().velocity, Vec3(0, 0, 0));
+    EXPECT_NEAR(path_length(path), frame.length, 1e-6);
+  }
+}
+
+TEST(PathProblem, ZeroVariablesAreTheCheapestWithoutObstacles) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  const Cost straight = evaluate(problem, zeros(problem));
+  EXPECT_NEAR(straight.f[0], 40.0, 1e-6);  // its length, no time lost
+  EXPECT_NEAR(straight.f[1], 0.0, 1e-6);
+  EXPECT_EQ(straight.f[2], 0.0);
+  EXPECT_EQ(straight.violation, 0.0);
+  RandomStream random(1);
+  for (int i = 0; i < 200; ++i) EXPECT_GT(evaluate(problem, random_variables(random, problem)).f[0], 40.0);
+}
+
+TEST(PathProblem, StartsInTheRequestsState) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  r.velocity = {1, -1, 0.5};
+  problem.prepare(r);
+  RandomStream random(2);
+  const TimedPath path = problem.motion(random_variables(random, problem));
+  EXPECT_EQ(path.front().t, 0.0);
+  EXPECT_EQ(path.front().position, r.position);
+  EXPECT_EQ(path.front().velocity, r.velocity);
+}
+
+// The limits are those of VehicleLimits, the acceleration acceleration_share of it. The last step, in which a path
+// within 5 cm of the target is put on it, is not counted.
+TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
+  const HorizonSettings settings;
+  PathProblem problem{settings};
+  RandomStream random(3);
+  for (int round = 0; round < 300; ++round) {
+    PathRequest r = request(Vec3(0, 0, 2) + random_vector(random, round % 2 == 0 ? 30.0 : 5.0));
+    r.velocity = 0.3 * random_vector(random, 5.0);
+    problem.prepare(r);
+    const TimedPath path = problem.motion(random_variables(random, problem));
+    ASSERT_GE(path.size(), 2U);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      ASSERT_NEAR(path[i].t - path[i - 1].t, settings.step, 1e-9);
+      const Vec3 moved = (path[i].position - path[i - 1].position) / settings.step;
+      ASSERT_LE(moved.norm(), r.vehicle.max_speed + 1e-9);
+      ASSERT_LE(std::abs(moved.z()), r.vehicle.max_climb + 1e-9);
+      if (i + 1 == path.size()) continue;
+      ASSERT_LE(path[i].velocity.norm(), r.vehicle.max_speed + 1e-9);
+      ASSERT_LE(std::abs(path[i].velocity.z()), r.vehicle.max_climb + 1e-9);
+      const Vec3 change = (path[i].velocity - path[i - 1].velocity) / settings.step;
+      ASSERT_LE(change.norm(), settings.acceleration_share * r.vehicle.max_acceleration + 1e-9);
+      ASSERT_LT((change - path[i - 1].acceleration).norm(), 1e-6);
+      ASSERT_LT((moved - 0.5 * (path[i].velocity + path[i - 1].velocity)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(PathProblem, MotionEndsAtTheTargetAndAtRest) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(4);
+  for (int round = 0; round < 100; ++round) {
+    PathRequest r = request(Vec3(0, 0, 2) + random_vector(random, 40.0));
+    problem.prepare(r);
+    const TimedPath path = problem.motion(random_variables(random, problem));
+    ASSERT_EQ(path.back().position, r.target);
+    ASSERT_EQ(path.back().velocity, Vec3(0, 0, 0));
+    if (path.size() > 1) {  // it ends where it arrived, and does not wait there
+      ASSERT_GT((path[path.size() - 2].position - r.target).norm(), 0.0);
+    }
+  }
+}
+
+TEST(PathProblem, WorksWhereStartAndTargetCoincide) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request({0, 0, 2});
+  problem.prepare(r);
+  const TimedPath path = problem.motion(zeros(problem));
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(path.back().position, r.target);
+  const Cost cost = evaluate(problem, zeros(problem));
+  EXPECT_TRUE(std::isfinite(cost.f[0] + cost.f[1] + cost.f[2] + cost.violation));
+}
+
+TEST(PathProblem, WaypointsStayInTheVolumeAndLeavingItIsAViolation) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(5);
+  PathRequest r = request();
+  r.volume = {{-1, -1, 1}, {45, 1, 3}};
+  problem.prepare(r);
+  for (int round = 0; round < 100; ++round) {
+    const std::vector<double> x = random_variables(random, problem);
+    double outside = 0.0;  // m·s
+    for (const TimedPoint& point : problem.motion(x)) {
+      if (point.t > problem.horizon() + 1e-9 || point.t == 0.0) continue;
+      const Vec3 inside = point.position.cwiseMax(r.volume.min).cwiseMin(r.volume.max);
+      outside += 0.1 * (point.position - inside).norm();
+    }
+    const Cost cost = evaluate(problem, x);
+    ASSERT_NEAR(cost.violation, outside, 1e-9);
+    ASSERT_LT(cost.violation, 0.5);  // overshoot alone, though variables of ±1 ask for 6 m to the side
+  }
+}
+
+/// f3 and violation by their definition, from every track, nothing left out.
+Cost reference_cost(const PathProblem& problem, const HorizonSettings& s, const PathRequest& r, const TimedPath& path) {
+  Cost cost;
+  for (int n = 0; n < problem.steps(); ++n) {
+    const double t = n * s.step;
+    const double weight = s.step / (0.5 + t);
+    const Vec3 from = sample(path, t).position;
+    const Vec3 to = sample(path, (n + 1) * s.step).position;
+    for (const Track& track : r.tracks) {
+      const Vec3 c = predict_position(track, t, r.acceleration_trust);
+      const Vec3 d = predict_position(track, (n + 1) * s.step, r.acceleration_trust);
+      const double distance = std::sqrt(swept_distance_squared(from, to, c, d));
+      const double ahead = (n + 1) * s.step + track.age;
+      const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
+      const double extra =
+          std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
+      const double hard = track.radius + r.vehicle.radius + r.margin;
+      cost.violation += weight * std::max(0.0, hard - distance);
+      if (extra > 0.0) {
+        const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+        cost.f[2] += weight * depth * depth;
+      }
+    }
+  }
+  return cost;
+}
+
+std::vector<Track> random_tracks(RandomStream& random) {
+  std::vector<Track> tracks;
+  for (std::uint64_t id = 0; id < 70; ++id) {  // more than two chunks of the inner loop
+    Track track = sphere(random_vector(random, 40.0), 1.5 * random_vector(random, 6.0), random.uniform(0.2, 1.0));
+    track.acceleration = random_vector(random, 2.0);
+    track.position_sigma = random.uniform(0.0, 0.1);
+    track.velocity_sigma = random.uniform(0.0, 0.1);
+    track.age = random.uniform(0.0, 0.3);
+    tracks.push_back(track);
+  }
+  return tracks;
+}
+
+// Also proves that no obstacle that can be met is left out.
+TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
+  const HorizonSettings settings;
+  PathProblem problem{settings};
+  RandomStream random(6);
+  int violated = 0;
+  std::size_t kept = 0;
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.velocity = random_vector(random, 2.0);
+    r.tracks = tracks;
+    r.margin = 0.35;
+    r.track_acceleration = 0.4;
+    r.acceleration_trust = round % 2 == 0 ? 0.7 : kInfinity;
+    problem.prepare(r);
+    kept += problem.obstacles();
+    for (int i = 0; i < 10; ++i) {
+      const std::vector<double> x = random_variables(random, problem);
+      const Cost cost = evaluate(problem, x);
+      const Cost expected = reference_cost(problem, settings, r, problem.motion(x));
+      ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9);
+      ASSERT_NEAR(cost.violation, expected.violation, 1e-9);
+      violated += cost.violation > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(violated, 50);
+  EXPECT_LT(violated, 590);
+  EXPECT_GT(kept, 60U * 20U);
+  EXPECT_LT(kept, 60U * 70U);
+}
+
+// 0.1 s steps at 200 m/s: 20 m between two instants, across the path.
+TEST(PathProblem, DoesNotLoseAnObstacleThatIsFarAwayAtEveryInstant) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  const std::vector<Track> tracks{sphere({1.5, -210, 2}, {0, 200, 0})};
+  r.tracks = tracks;
+  problem.prepare(r);
+  EXPECT_EQ(problem.obstacles(), 1U);
+  EXPECT_GT(evaluate(problem, zeros(problem)).violation, 0.0);
+}
+
+TEST(PathProblem, UnreachableObstaclesAreLeftOutAndChangeNothing) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(7);
+  PathRequest r = request();
+  const std::vector<Track> near{sphere({6, 0.3, 2}, {-1, 0, 0})};
+  std::vector<Track> all = near;
+  all.push_back(sphere({100, 0, 2}, {0, 0, 0}));
+  all.push_back(sphere({20, 40, 2}, {0, 3, 0}));
+  const std::vector<double> x = random_variables(random, problem, 0.2);
+  r.tracks = near;
+  problem.prepare(r);
+  const Cost without = evaluate(problem, x);
+  r.tracks = all;
+  problem.prepare(r);
+  EXPECT_EQ(problem.obstacles(), 1U);
+  const Cost with = evaluate(problem, x);
+  EXPECT_EQ(with.f, without.f);
+  EXPECT_EQ(with.violation, without.violation);
+}
+
+// Waiting 2 s at the start, then 40 m: the arrival is 2 s later, 0.5 · 3 m/s · 2 s = 3 m in the length objective.
+TEST(PathProblem, LostTimeCountsAsLength) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request({9, 0, 2});
+  problem.prepare(r);
+  const TimedPath straight = problem.motion(zeros(problem));
+  TimedPath late = straight;
+  for (TimedPoint& point : late) point.t += 1.0;
+  EXPECT_NEAR(problem.cost_of(straight).f[0], 9.0, 0.16);  // at most 0.1 s of rounding to steps
+  EXPECT_NEAR(problem.cost_of(late).f[0] - problem.cost_of(straight).f[0], 0.5 * 3.0 * 1.0, 0.16);
+}
+
+// Right angle to the left, then straight on to the target behind it: π/2, and the way back to the line.
+TEST(PathProblem, SteeringIsTheSumOfTheAnglesBetweenLegs) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request({6, 6, 2});
+  r.velocity = {1, 0, 0};
+  problem.prepare(r);
+  // At 2 m/s east for 3 s, then north for 3 s: corners at waypoint 3 (t = 3 s) alone.
+  const TimedPath path{{0, {0, 0, 2}, Vec3::Zero(), Vec3::Zero()},
+                       {3, {6, 0, 2}, Vec3::Zero(), Vec3::Zero()},
+                       {6, {6, 6, 2}, Vec3::Zero(), Vec3::Zero()}};
+  EXPECT_NEAR(problem.cost_of(path).f[1], std::numbers::pi / 2, 1e-9);
+}
+
+TEST(PathProblem, CostOfAMotionIsItsEvaluation) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(8);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.tracks = tracks;
+    r.margin = 0.35;
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem, 0.5);
+    const Cost a = evaluate(problem, x);
+    const Cost b = problem.cost_of(problem.motion(x));
+    EXPECT_NEAR(a.f[0], b.f[0], 1e-9);
+    EXPECT_NEAR(a.f[1], b.f[1], 1e-9);
+    EXPECT_NEAR(a.f[2], b.f[2], 1e-9);
+    EXPECT_NEAR(a.violation, b.violation, 1e-9);
+  }
+}
+
+TEST(PathProblem, EvaluatesSeveralSolutionsLikeOne) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  RandomStream random(9);
+  std::vector<double> all;
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<double> x = random_variables(random, problem);
+    all.insert(all.end(), x.begin(), x.end());
+  }
+  std::vector<Cost> costs(5);
+  problem.evaluate(all, costs);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(costs[i].f, evaluate(problem, std::span(all).subspan(18 * i, 18)).f);
+}
+
+TEST(PathProblem, ImitatedMotionStaysClose) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(10);
+  double worst = 0.0;
+  for (int round = 0; round < 100; ++round) {
+    PathRequest r = request();
+    r.velocity = {3, 0, 0};
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem, 0.15);
+    const TimedPath path = problem.motion(x);
+    std::vector<double> y(x.size());
+    problem.imitate(path, y);
+    const TimedPath again = problem.motion(y);
+    for (int n = 0; n <= problem.steps(); ++n) {
+      worst = std::max(worst, (sample(path, 0.1 * n).position - sample(again, 0.1 * n).position).norm());
+    }
+  }
+  EXPECT_LT(worst, 0.5) << worst;
+  RecordProperty("worst_m", std::to_string(worst));
+}
+
+// The first waypoint after 1 s: 2 m to the left and 1 m up of the straight line, of min(6, 5·1) = 5 m that ±1 reaches.
+TEST(PathProblem, ImitationIsTheOffsetOverTheReach) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  std::vector<double> x = zeros(problem);
+  problem.imitate({{0, {0, 2, 3}, Vec3::Zero(), Vec3::Zero()}}, x);
+  EXPECT_NEAR(x[1], 2.0 / 5.0, 1e-12);
+  EXPECT_NEAR(x[2], 1.0 / 5.0, 1e-12);
+  EXPECT_NEAR(x[4], 2.0 / 6.0, 1e-12);
+  EXPECT_LT(x[0], 0.0);  // it stays behind undisturbed flight
+  for (const double value : x) EXPECT_LE(std::abs(value), 1.0);
+}
+
+TEST(PathProblem, ManoeuvreGoesAsideAndReturns) {
+  PathProblem problem{HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  std::vector<double> x = zeros(problem);
+  problem.manoeuvre(0.0, 3.0, 0.0, x);
+  double leftmost = 0.0;
+  for (const TimedPoint& point : problem.motion(x)) leftmost = std::max(leftmost, point.position.y());
+  EXPECT_NEAR(leftmost, 3.0, 0.3);
+  EXPECT_EQ(x[15], 0.0);
+  EXPECT_EQ(x[16], 0.0);
+}
+
+}  // namespace
+}  // namespace jink::planner

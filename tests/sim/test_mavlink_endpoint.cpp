@@ -192,6 +192,7 @@ class MavlinkEndpointTest : public testing::Test {
       joined[text.id] += std::string(text.text, strnlen(text.text, sizeof(text.text)));
     }
     std::vector<std::string> result;
+    result.reserve(joined.size());
     for (const auto& [id, text] : joined) result.push_back(text);
     return result;
   }

@@ -13,6 +13,14 @@ namespace {
 
 constexpr double kStep = VehicleModel::kStep;
 
+int steps_in(double duration) {
+  return static_cast<int>(std::lround(duration / kStep));
+}
+
+void fly(VehicleModel& model, double duration) {
+  for (int i = 0; i < steps_in(duration); ++i) model.step();
+}
+
 planner::VehicleLimits large_limits() {
   planner::VehicleLimits limits;
   limits.max_speed = 12.0;
@@ -34,11 +42,12 @@ std::vector<Sample> step_response(const planner::VehicleLimits& limits, const Ve
   setpoint.position = start;
   model.set_setpoint(setpoint);
   model.set_motors(Motors::kFlying);
-  for (double t = 0; t < 1.0; t += kStep) model.step();
+  fly(model, 1.0);
   setpoint.position = start + distance * direction;
   model.set_setpoint(setpoint);
   std::vector<Sample> samples;
-  for (double t = kStep; t <= duration; t += kStep) {
+  for (int i = 1; i <= steps_in(duration); ++i) {
+    const double t = i * kStep;
     model.step();
     const Motion& m = model.motion();
     samples.push_back(
@@ -112,7 +121,7 @@ TEST(VehicleModel, ReachesVelocitySetpointsAsSlowlyAsPx4) {
     Setpoint setpoint;
     setpoint.velocity = {asked, 0, 0};
     model.set_setpoint(setpoint);
-    for (double t = 0; t < 4.5; t += kStep) model.step();
+    fly(model, 4.5);
     EXPECT_NEAR(model.motion().velocity.x(), 0.8 * asked, 0.06 * asked);
     EXPECT_NEAR(model.motion().velocity.tail<2>().norm(), 0.0, 1e-9);
   }
@@ -207,7 +216,7 @@ TEST(VehicleModel, RecoversFromALongSaturationWithoutWindup) {
   setpoint.position = {200, 0, 20};
   model.set_setpoint(setpoint);
   double largest = 0;
-  for (double t = 0; t < 80.0; t += kStep) {
+  for (int i = 0; i < steps_in(80.0); ++i) {
     model.step();
     largest = std::max(largest, model.motion().position.x());
   }
@@ -217,12 +226,11 @@ TEST(VehicleModel, RecoversFromALongSaturationWithoutWindup) {
 
 TEST(VehicleModel, ObeysNewtonsLawInFreeFallWithDrag) {
   VehicleModel model(large_limits(), Vec3(0, 0, 500), 0.0);
-  double t = 0;
-  for (; t < 1.0 - kStep / 2; t += kStep) model.step();
+  fly(model, 1.0);
   // v' = -g - v from rest: v = -g (1 - e^-t).
   EXPECT_NEAR(model.motion().velocity.z(), -kGravity * (1 - std::exp(-1.0)), 0.02);
   EXPECT_EQ(model.motion().velocity.head<2>().norm(), 0.0);
-  for (; t < 120.0; t += kStep) model.step();
+  fly(model, 119.0);
   EXPECT_TRUE(model.on_ground());
   EXPECT_EQ(model.motion().position.z(), 0.0);
   EXPECT_EQ(model.motion().velocity.norm(), 0.0);
@@ -244,7 +252,7 @@ TEST(VehicleModel, TheGroundCarriesIt) {
   Setpoint up;
   up.position = {1, 2, 3.5};
   model.set_setpoint(up);
-  for (double t = 0; t < 6.0; t += kStep) model.step();
+  fly(model, 6.0);
   EXPECT_NEAR(model.motion().position.z(), 3.5, 0.1);  // pressed to the ground it wound nothing up
 }
 
@@ -276,7 +284,8 @@ TEST(VehicleModel, TurnsAsPx4) {
   double t90 = 0;
   double fastest = 0;
   double furthest = 0;
-  for (double t = kStep; t < 5.0; t += kStep) {
+  for (int i = 1; i <= steps_in(5.0); ++i) {
+    const double t = i * kStep;
     model.step();
     const double yaw = model.motion().yaw;
     if (t50 == 0 && yaw > 45 * kDegree) t50 = t;
@@ -299,7 +308,7 @@ TEST(VehicleModel, TurnsTheShortWay) {
   setpoint.yaw = -170 * kDegree;
   model.set_setpoint(setpoint);
   model.set_motors(Motors::kFlying);
-  for (double t = 0; t < 4.0; t += kStep) {
+  for (int i = 0; i < steps_in(4.0); ++i) {
     model.step();
     ASSERT_GT(std::abs(model.motion().yaw), 160 * kDegree);
   }
