@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "planner/obstacle_motion.hpp"
+
+namespace jink::planner {
+namespace {
+
+Track sphere(std::uint64_t id, const Vec3& position, const Vec3& velocity, double radius = 0.5) {
+  Track track;
+  track.id = id;
+  track.position = position;
+  track.velocity = velocity;
+  track.radius = radius;
+  return track;
+}
+
+PathRequest request(const std::vector<Track>& tracks) {
+  PathRequest r;
+  r.position = {0, 0, 2};
+  r.velocity = {2, 0, 0};
+  r.target = {20, 0, 2};
+  r.volume = {{-5, -10, 0.3}, {25, 10, 8}};
+  r.tracks = tracks;
+  r.margin = HorizonSettings{}.margin;
+  return r;
+}
+
+/// Spheres of radius 1 side by side across the straight line at x = 8, with a way round at the sides alone.
+std::vector<Track> wall() {
+  std::vector<Track> tracks;
+  std::uint64_t id = 1;
+  for (const double z : {0.5, 2.0, 3.5, 5.0, 6.5}) {
+    for (double y = -3.0; y <= 3.0; y += 1.5) tracks.push_back(sphere(id++, {8, y, z}, {0, 0, 0}, 1.0));
+  }
+  return tracks;
+}
+
+Plan plan_once(const PathRequest& r, int threads = 2, const TimedPath& previous = {}, std::uint64_t seed = 1) {
+  WorkerPool pool(threads);
+  HorizonPlanner planner{HorizonSettings{}};
+  return planner.plan(r, previous, seed, 0, {HorizonSettings{}.generations, Budget::Time::max()}, pool);
+}
+
+Verification check(const PathRequest& r, const TimedPath& path, double until = kInfinity) {
+  return verify({path, r.tracks, 0.0, r.vehicle.radius, r.volume, r.acceleration_trust, until});
+}
+
+void expect_same_path(const TimedPath& a, const TimedPath& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t, b[i].t);
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].velocity, b[i].velocity);
+    EXPECT_EQ(a[i].acceleration, b[i].acceleration);
+  }
+}
+
+struct Case {
+  const char* name;
+  std::vector<Track> tracks;
+};
+
+std::vector<Case> blocked_lines() {
+  return {{"head-on", {sphere(1, {16, 0, 2}, {-2, 0, 0}, 0.8)}},
+          {"crossing", {sphere(1, {7.5, -5, 2}, {0, 2, 0}, 0.8)}},
+          {"wall", wall()}};
+}
+
+TEST(HorizonPlanner, PlansAroundWhatBlocksTheStraightLine) {
+  for (const Case& c : blocked_lines()) {
+    const PathRequest r = request(c.tracks);
+    const TimedPath straight{{0, r.position, r.velocity, Vec3::Zero()},
+                             {20.0 / 3.0, r.target, r.velocity, Vec3::Zero()}};
+    ASSERT_FALSE(check(r, straight).free()) << c.name;  // the case is one
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Plan plan = plan_once(r, 2, {}, seed);
+      ASSERT_TRUE(plan.status == PlanStatus::kReaches || plan.status == PlanStatus::kProgresses) << c.name;
+      EXPECT_TRUE(check(r, plan.path, 6.0).free()) << c.name;
+      EXPECT_EQ(plan.status == PlanStatus::kReaches, check(r, plan.path).free()) << c.name;
+      EXPECT_EQ(plan.path.front().position, r.position);
+      EXPECT_EQ(plan.path.front().t, 0.0);
+      EXPECT_EQ(plan.path.back().position, r.target) << c.name;
+      EXPECT_FALSE(plan.kept_previous);
+    }
+  }
+}
+
+TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
+  const std::vector<Track> none;
+  const PathRequest r = request(none);
+  const Plan plan = plan_once(r);
+  EXPECT_EQ(plan.status, PlanStatus::kReaches);
+  EXPECT_LT(path_length(plan.path), 20.0 * 1.01);
+  EXPECT_EQ(plan.evaluations, 40 * 48);
+  EXPECT_EQ(plan.generations, 40);
+}
+
+TEST(HorizonPlanner, SameBitsForAnyNumberOfThreads) {
+  for (const Case& c : blocked_lines()) {
+    const PathRequest r = request(c.tracks);
+    const Plan one = plan_once(r, 1);
+    for (const int threads : {2, 8}) {
+      const Plan plan = plan_once(r, threads);
+      expect_same_path(plan.path, one.path);
+      EXPECT_EQ(plan.front, one.front);
+      EXPECT_EQ(plan.status, one.status);
+    }
+  }
+}
+
+TEST(HorizonPlanner, DoesNotDependOnEarlierPlans) {
+  const std::vector<Case> cases = blocked_lines();
+  WorkerPool pool(1);
+  HorizonPlanner planner{HorizonSettings{}};
+  const Budget budget{40, Budget::Time::max()};
+  const PathRequest wall_request = request(cases[2].tracks);
+  const PathRequest crossing_request = request(cases[1].tracks);
+  planner.plan(wall_request, {}, 5, 17, budget, pool);
+  expect_same_path(planner.plan(crossing_request, {}, 1, 0, budget, pool).path, plan_once(crossing_request).path);
+}
+
+TEST(HorizonPlanner, KeepsThePreviousPlanWhereNothingIsClearlyBetter) {
+  const std::vector<Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = request(tracks);
+  const Plan first = plan_once(r);
+  const Plan second = plan_once(r, 2, first.path, 2);
+  EXPECT_TRUE(second.kept_previous);
+  expect_same_path(second.path, first.path);
+}
+
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsNoLongerFree) {
+  const std::vector<Track> none;
+  const Plan first = plan_once(request(none));
+  const std::vector<Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = request(tracks);
+  ASSERT_FALSE(check(r, first.path).free());
+  const Plan second = plan_once(r, 2, first.path);
+  EXPECT_FALSE(second.kept_previous);
+  EXPECT_TRUE(check(r, second.path, 6.0).free());
+}
+
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsClearlyWorse) {
+  const std::vector<Track> none;
+  const PathRequest r = request(none);
+  const TimedPath detour{{0, r.position, r.velocity, Vec3::Zero()},
+                         {5, {10, 8, 2}, Vec3::Zero(), Vec3::Zero()},
+                         {10, r.target, Vec3::Zero(), Vec3::Zero()}};
+  const Plan plan = plan_once(r, 2, detour);
+  EXPECT_FALSE(plan.kept_previous);
+  EXPECT_LT(path_length(plan.path), 20.2);
+}
+
+// Faster than the vehicle can get out of the way of: a sphere of 6 m at 8 m/s, 10 m ahead.
+TEST(HorizonPlanner, GivesTheLeastBadManoeuvreWhereNothingIsFree) {
+  const std::vector<Track> tracks{sphere(1, {16, 0, 2}, {-8, 0, 0}, 6.0)};
+  PathRequest r = request(tracks);
+  const Plan plan = plan_once(r);
+  EXPECT_EQ(plan.status, PlanStatus::kBlocked);
+  ASSERT_TRUE(plan.verification.first_contact.has_value());
+  const TimedPath straight{{0, r.position, r.velocity, Vec3::Zero()}, {10, {20, 0, 2}, Vec3::Zero(), Vec3::Zero()}};
+  EXPECT_GT(*plan.verification.first_contact, *check(r, straight).first_contact);  // it stays free for longer
+}
+
+TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};
+  PathRequest r = request(tracks);
+  r.velocity.y() = nan;
+  EXPECT_EQ(plan_once(r).status, PlanStatus::kInvalid);
+  EXPECT_TRUE(plan_once(r).path.empty());
+  r = request(tracks);
+  r.target.z() = kInfinity;
+  EXPECT_EQ(plan_once(r).status, PlanStatus::kInvalid);
+  tracks[0].age = nan;
+  EXPECT_EQ(plan_once(request(tracks)).status, PlanStatus::kInvalid);
+}
+
+TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
+  HorizonSettings s;
+  s.population = 2;
+  EXPECT_THROW(HorizonPlanner{s}, std::invalid_argument);
+}
+
+TEST(HorizonPlanner, ExpiredDeadlineStillGivesAPlan) {
+  const std::vector<Track> none;
+  const PathRequest r = request(none);
+  WorkerPool pool(1);
+  HorizonPlanner planner{HorizonSettings{}};
+  const Plan plan = planner.plan(r, {}, 1, 0, {40, Budget::Time::min()}, pool);
+  EXPECT_TRUE(plan.deadline_reached);
+  EXPECT_EQ(plan.generations, 10);
+  EXPECT_EQ(plan.status, PlanStatus::kReaches);
+}
+
+Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {
+  WorkerPool pool(threads);
+  HorizonPlanner planner{HorizonSettings{}};
+  return plan_open_loop(planner, {r, time_limit, commit}, 1, {40, Budget::Time::max()}, pool);
+}
+
+PathRequest from_rest(const std::vector<Track>& tracks) {
+  PathRequest r = request(tracks);
+  r.velocity = Vec3::Zero();
+  return r;
+}
+
+void expect_flyable(const Plan& plan, const PathRequest& r) {
+  ASSERT_FALSE(plan.path.empty());
+  EXPECT_EQ(plan.path.front().t, 0.0);
+  EXPECT_EQ(plan.path.front().position, r.position);
+  for (std::size_t i = 0; i < plan.path.size(); ++i) {
+    EXPECT_TRUE(r.volume.contains(plan.path[i].position, 1e-9));
+    if (i == 0) continue;
+    const double dt = plan.path[i].t - plan.path[i - 1].t;
+    ASSERT_GT(dt, 1e-6);
+    EXPECT_LE((plan.path[i].position - plan.path[i - 1].position).norm(), r.vehicle.max_speed * dt + 1e-9);
+  }
+}
+
+TEST(PlanOpenLoop, ReachesTheTargetFreeContinuousAndInsideTheVolume) {
+  std::vector<Case> cases = blocked_lines();
+  cases.push_back({"accelerating", {sphere(1, {10, -12, 2}, {0, 0, 0}, 0.8)}});
+  cases.back().tracks[0].acceleration = {0, 1.5, 0};
+  for (const Case& c : cases) {
+    const PathRequest r = from_rest(c.tracks);
+    const Plan plan = open_loop(r);
+    EXPECT_EQ(plan.status, PlanStatus::kReaches) << c.name << ": " << to_string(plan.status);
+    EXPECT_TRUE(check(r, plan.path).free()) << c.name;
+    EXPECT_EQ(plan.path.back().position, r.target) << c.name;
+    expect_flyable(plan, r);
+  }
+}
+
+TEST(PlanOpenLoop, CommitNeedNotBeAWholeNumberOfSteps) {
+  const std::vector<Track> tracks = blocked_lines()[0].tracks;
+  const PathRequest r = from_rest(tracks);
+  const Plan plan = open_loop(r, 2, 60.0, 0.33);
+  EXPECT_EQ(plan.status, PlanStatus::kReaches);
+  expect_flyable(plan, r);
+}
+
+TEST(PlanOpenLoop, SameBitsForAnyNumberOfThreads) {
+  const std::vector<Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = from_rest(tracks);
+  const Plan one = open_loop(r, 1);
+  for (const int threads : {2, 8}) expect_same_path(open_loop(r, threads).path, one.path);
+}
+
+TEST(PlanOpenLoop, SaysThatTheStartIsBlocked) {
+  const std::vector<Track> tracks{sphere(1, {0.5, 0, 2}, {0, 0, 0})};
+  const Plan plan = open_loop(from_rest(tracks));
+  EXPECT_EQ(plan.status, PlanStatus::kStartBlocked);
+  EXPECT_EQ(plan.path.size(), 1U);
+}
+
+// The target is inside a resting sphere: the vehicle comes near and waits clear of it.
+TEST(PlanOpenLoop, DoesNotReachABlockedTarget) {
+  const std::vector<Track> tracks{sphere(1, {20, 0, 2}, {0, 0, 0}, 1.0)};
+  const PathRequest r = from_rest(tracks);
+  const Plan plan = open_loop(r, 2, 15.0);
+  EXPECT_NE(plan.status, PlanStatus::kReaches);
+  EXPECT_TRUE(plan.verification.free());
+  EXPECT_LT((plan.path.back().position - r.target).norm(), 8.0);
+  EXPECT_LE(plan.path.back().t, 15.0 + 0.5 + 1e-9);
+}
+
+TEST(PlanOpenLoop, RefusesNumbersThatAreNotFinite) {
+  std::vector<Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};
+  tracks[0].position.x() = std::numeric_limits<double>::quiet_NaN();
+  const Plan plan = open_loop(from_rest(tracks));
+  EXPECT_EQ(plan.status, PlanStatus::kInvalid);
+  EXPECT_TRUE(plan.path.empty());
+}
+
+}  // namespace
+}  // namespace jink::planner

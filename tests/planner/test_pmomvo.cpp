@@ -78,7 +78,7 @@ double volume_of(const Front& front) {
   return hypervolume(points, {1.1, 1.1});
 }
 
-// The true front has 0.8767.
+// The true front has 0.8767; the least over 60 seeds is 0.856 (6 slaves).
 TEST(Pmomvo, ConvergesOnZdt1) {
   const Zdt1 problem;
   WorkerPool pool(2);
@@ -87,7 +87,7 @@ TEST(Pmomvo, ConvergesOnZdt1) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Front& front = optimizer.run(problem, {}, seed, 0, {}, pool);
       expect_front(front);
-      EXPECT_GT(volume_of(front), 0.80) << slaves << " slaves, seed " << seed;
+      EXPECT_GT(volume_of(front), 0.84) << slaves << " slaves, seed " << seed;
       EXPECT_LT(volume_of(front), 0.8767);
     }
   }

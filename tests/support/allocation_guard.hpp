@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts heap allocations, on every thread, to prove that a hot path makes none. Linking allocation_guard.cpp replaces the
-// global operator new and delete of the test binary. Memory that is taken from malloc directly is not seen; the planner
-// has no such place, since its Eigen types have a fixed size.
+// Counts heap allocations, on every thread, to prove that a hot path makes none. Linking allocation_guard.cpp replaces
+// the global operator new and delete of the test binary. Memory that is taken from malloc directly is not seen; the
+// planner has no such place, since its Eigen types have a fixed size.
 #pragma once
 
 #include <cstddef>

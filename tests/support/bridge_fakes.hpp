@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stand-ins for what the companion talks to: a clock, an autopilot, a track writer and a planner that do as a test says.
+// Stand-ins for what the companion talks to: a clock, an autopilot, a track writer and a planner that do as a test
+// says.
 #pragma once
 
 #include <deque>
@@ -88,7 +89,8 @@ class FakePlanner final : public PlannerTask {
     const Vec3 way = request.target - request.position;
     const double time = way.norm() / speed;
     planner::TimedPath path;
-    for (double t = 0.0; t < time; t += 0.1) path.push_back({t, request.position + t / time * way, way / time, Vec3::Zero()});
+    for (double t = 0.0; t < time; t += 0.1)
+      path.push_back({t, request.position + t / time * way, way / time, Vec3::Zero()});
     path.push_back({time + 1e-3, request.target, Vec3::Zero(), Vec3::Zero()});
     return path;
   }
