@@ -169,6 +169,15 @@ TEST(HorizonPlanner, GivesTheLeastBadManoeuvreWhereNothingIsFree) {
   EXPECT_GT(*plan.verification.first_contact, *check(r, straight).first_contact);  // it stays free for longer
 }
 
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsHitSoonerWhereNothingIsFree) {
+  const std::vector<Track> tracks{sphere(1, {16, 0, 2}, {-8, 0, 0}, 6.0)};
+  const PathRequest r = request(tracks);
+  const TimedPath into_it{{0, r.position, r.velocity, Vec3::Zero()}, {5, r.target, Vec3::Zero(), Vec3::Zero()}};
+  const Plan plan = plan_once(r, 2, into_it);
+  EXPECT_FALSE(plan.kept_previous);
+  EXPECT_GT(*plan.verification.first_contact, *check(r, into_it).first_contact);
+}
+
 TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};

@@ -198,7 +198,7 @@ RandomCase random_case(std::uint64_t seed) {
     t += random.uniform(0.2, 1.5);
   }
   for (std::uint64_t id = 0; id < 3; ++id) {
-    Track track = moving(vec(8.0), vec(4.0), random.uniform(0.3, 1.5), id);
+    Track track = moving(vec(5.0), vec(4.0), random.uniform(0.3, 1.5), id);
     track.acceleration = vec(3.0);
     c.tracks.push_back(track);
   }

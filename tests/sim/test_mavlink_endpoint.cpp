@@ -296,11 +296,11 @@ TEST_F(BootingEndpointTest, StartsUpAsPx4Does) {
 }
 
 TEST_F(AirborneEndpointTest, ReportsTheMotionInNedAndDegrees) {
-  setpoint(kVelocityOnly, {}, {1.0, 2.0, -0.5});
+  setpoint(kVelocityOnly, Vec3::Zero(), {1.0, 2.0, -0.5});
   poll();
   ASSERT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
   for (int i = 0; i < 100; ++i) {
-    setpoint(kVelocityOnly, {}, {1.0, 2.0, -0.5});
+    setpoint(kVelocityOnly, Vec3::Zero(), {1.0, 2.0, -0.5});
     run(0.02);
   }
   const Motion& motion = autopilot.true_motion();
@@ -354,7 +354,7 @@ TEST_F(MavlinkEndpointTest, SetModeIsAnsweredTwiceTheSecondTimeTruly) {
   EXPECT_EQ(command(MAV_CMD_COMPONENT_ARM_DISARM, {1}), (Results{0}));
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 1}));  // armed, no stream
   EXPECT_EQ(autopilot.mode(), FlightMode::kHold);
-  setpoint(kPositionOnly, {0, 0, -3}, {});
+  setpoint(kPositionOnly, {0, 0, -3}, Vec3::Zero());
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 99}), (Results{0, 0}));
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 4, 77}), (Results{0, 1}));
@@ -478,10 +478,10 @@ TEST_F(MavlinkEndpointTest, MessageIntervalsCanBeChangedAskedForAndReset) {
 }
 
 TEST_F(AirborneEndpointTest, TakesPositionSetpointsInNed) {
-  setpoint(kPositionOnly, {6, -4, -5}, {});
+  setpoint(kPositionOnly, {6, -4, -5}, Vec3::Zero());
   ASSERT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
   for (int i = 0; i < 750; ++i) {
-    setpoint(kPositionOnly, {6, -4, -5}, {}, MAV_FRAME_LOCAL_NED, i % 2 == 0 ? 1 : 0, i % 2 == 0 ? 1 : 0);
+    setpoint(kPositionOnly, {6, -4, -5}, Vec3::Zero(), MAV_FRAME_LOCAL_NED, i % 2 == 0 ? 1 : 0, i % 2 == 0 ? 1 : 0);
     run(0.02);
   }
   EXPECT_LT((autopilot.true_motion().position - Vec3(-4, 6, 5)).norm(), 0.2);
@@ -511,14 +511,14 @@ TEST_F(AirborneEndpointTest, TurnsBodyVelocitiesByItsAttitude) {
 
 TEST_F(AirborneEndpointTest, UnusableSetpointsGetATextEachAndAreNoStream) {
   ground_station_heartbeat();
-  setpoint(kPositionOnly, {0, 0, -3}, {}, 7);
-  setpoint(0x0FFF, {0, 0, -3}, {});
-  setpoint(kPositionOnly, {std::numeric_limits<double>::quiet_NaN(), 0, -3}, {});
-  setpoint(kPositionOnly, {planner::kInfinity, 0, -3}, {});
+  setpoint(kPositionOnly, {0, 0, -3}, Vec3::Zero(), 7);
+  setpoint(0x0FFF, {0, 0, -3}, Vec3::Zero());
+  setpoint(kPositionOnly, {std::numeric_limits<double>::quiet_NaN(), 0, -3}, Vec3::Zero());
+  setpoint(kPositionOnly, {planner::kInfinity, 0, -3}, Vec3::Zero());
   poll();
   EXPECT_EQ(texts_with("coordinate frame 7 unsupported"), 1U);
   EXPECT_EQ(texts_with("SET_POSITION_TARGET_LOCAL_NED invalid"), 3U);
-  setpoint(kPositionOnly, {0, 0, -3}, {}, MAV_FRAME_LOCAL_NED, 2, 1);  // another vehicle's
+  setpoint(kPositionOnly, {0, 0, -3}, Vec3::Zero(), MAV_FRAME_LOCAL_NED, 2, 1);  // another vehicle's
   poll();
   EXPECT_FALSE(autopilot.stream_live());
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 1}));
