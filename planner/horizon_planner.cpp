@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "planner/obstacle_motion.hpp"
 #include "planner/topsis.hpp"
@@ -30,14 +31,23 @@ bool finite(const PathRequest& request) {
          });
 }
 
+/// Checks a path up to a time; a path that ends before waits at its end.
 Verification verify_until(const TimedPath& path, const PathRequest& request, double until) {
-  return verify({path, request.tracks, 0.0, request.vehicle.radius, request.volume, request.acceleration_trust, until});
+  const auto check = [&](std::span<const TimedPoint> points) {
+    return verify(
+        {points, request.tracks, 0.0, request.vehicle.radius, request.volume, request.acceleration_trust, until});
+  };
+  if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
+  TimedPath waiting = path;
+  waiting.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
+  return check(waiting);
 }
 
 /// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
 /// the verifier's accuracy), then the softer contact.
 bool less_harm(const Verification& a, const Verification& b) {
   if (a.free() != b.free()) return a.free();
+  if (a.valid != b.valid) return a.valid;
   if (a.free()) return a.min_clearance > b.min_clearance;
   if (a.inside_volume != b.inside_volume && !a.first_contact) return a.inside_volume;
   const double until_a = a.first_contact.value_or(kInfinity);
@@ -73,7 +83,7 @@ HorizonPlanner::HorizonPlanner(const HorizonSettings& settings)
       problem_(settings),
       optimizer_(optimizer_settings(settings), problem_.dimension(), problem_.objectives()) {}
 
-// What a pilot would try first: straight on, stop, slow, fast, and aside in eight directions.
+// What a pilot would try first: straight on, stop, slower, faster, and aside in four directions.
 void HorizonPlanner::seed_manoeuvres(const PathRequest& request, const TimedPath& previous) {
   initial_.clear();
   const auto add = [&]() -> std::span<double> {
@@ -84,8 +94,8 @@ void HorizonPlanner::seed_manoeuvres(const PathRequest& request, const TimedPath
   problem_.manoeuvre(0.0, 0.0, 0.0, add());
   if (!previous.empty()) problem_.imitate(previous, add());
   problem_.imitate({{0.0, request.position, Vec3::Zero(), Vec3::Zero()}}, add());
-  for (const double share : {-0.5, -0.25, 0.5, 1.0}) problem_.manoeuvre(share, 0.0, 0.0, add());
-  for (const double distance : {1.5, 3.0}) {
+  for (const double share : {-0.5, -0.25, -0.1, 0.25, 0.75}) problem_.manoeuvre(share, 0.0, 0.0, add());
+  for (const double distance : {0.7, 1.5, 3.0}) {
     for (const auto& [left, up] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
       problem_.manoeuvre(0.0, distance * left, distance * up, add());
     }
@@ -182,8 +192,9 @@ Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std
     whole.evaluations += part.evaluations;
     whole.generations = part.generations;
     whole.deadline_reached = whole.deadline_reached || part.deadline_reached;
+    whole.deadline_reached = whole.deadline_reached || budget.expired();
     const bool last = part.status == PlanStatus::kReaches || t + request.commit >= request.time_limit ||
-                      part.path.back().t <= request.commit || (budget.expired() && whole.deadline_reached);
+                      part.path.back().t <= request.commit || budget.expired();
     const double keep =
         part.status == PlanStatus::kReaches ? part.path.back().t : std::min(request.commit, part.path.back().t);
     for (const TimedPoint& point : part.path) {
@@ -191,8 +202,10 @@ Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std
       if (!whole.path.empty() && point.t <= 1e-9) continue;
       whole.path.push_back({t + point.t, point.position, point.velocity, point.acceleration});
     }
-    if (last) break;
     const TimedPoint next = sample(part.path, keep);
+    if (t + keep > whole.path.back().t + 1e-9)
+      whole.path.push_back({t + keep, next.position, next.velocity, next.acceleration});
+    if (last) break;
     t += keep;
     from.position = next.position;
     from.velocity = next.velocity;

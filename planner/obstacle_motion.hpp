@@ -10,26 +10,29 @@ namespace jink::planner {
 
 /// The track's position after t >= 0 seconds: constant acceleration for the first `trust` seconds, constant velocity
 /// from then on. differs: [Paper] Eq. (5)-(7) add v(t+Δt)Δt + ½aΔt², which is aΔt² too much; this is x + vΔt + ½aΔt².
-/// `trust` bounds how far a measured acceleration is believed; infinity makes it the paper's model.
+/// `trust` bounds how far a measured acceleration is believed, counted from the measurement (the track's age is past
+/// already); infinity makes it the paper's model.
 inline Vec3 predict_position(const Track& track, double t, double trust = kInfinity) {
-  const double accelerated = std::min(t, trust);
+  const double believed = std::max(0.0, trust - track.age);
+  const double accelerated = std::min(t, believed);
   const Vec3 position =
       track.position + accelerated * track.velocity + 0.5 * accelerated * accelerated * track.acceleration;
-  if (t <= trust) return position;
+  if (t <= believed) return position;
   return position + (t - accelerated) * (track.velocity + accelerated * track.acceleration);
 }
 
 /// The track's velocity after t >= 0 seconds, Eq. (4).
 inline Vec3 predict_velocity(const Track& track, double t, double trust = kInfinity) {
-  return track.velocity + std::min(t, trust) * track.acceleration;
+  return track.velocity + std::min(t, std::max(0.0, trust - track.age)) * track.acceleration;
 }
 
-/// The same track, valid t >= 0 seconds later.
+/// The same track, valid t >= 0 seconds later and older by that.
 inline Track predict(const Track& track, double t, double trust = kInfinity) {
   Track later = track;
   later.position = predict_position(track, t, trust);
   later.velocity = predict_velocity(track, t, trust);
-  if (t > trust) later.acceleration = Vec3::Zero();
+  later.age += t;
+  if (later.age > trust) later.acceleration = Vec3::Zero();
   return later;
 }
 

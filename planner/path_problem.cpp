@@ -5,6 +5,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "planner/obstacle_motion.hpp"
 
@@ -27,6 +29,12 @@ Vec3 limited(const Vec3& v, double limit) {
   return norm > limit ? Vec3(v * (limit / norm)) : v;
 }
 
+const HorizonSettings& checked(const HorizonSettings& settings) {
+  if (settings.waypoints < 1) throw std::invalid_argument("horizon.waypoints: not at least 1");
+  if (!(settings.step > 0.0 && settings.time > 0.0)) throw std::invalid_argument("horizon.step and time: not above 0");
+  return settings;
+}
+
 /// How far a point lies outside a volume.
 double distance_outside(const Box& volume, const Vec3& p) {
   return (p - p.cwiseMax(volume.min).cwiseMin(volume.max)).norm();
@@ -35,16 +43,19 @@ double distance_outside(const Box& volume, const Vec3& p) {
 }  // namespace
 
 PathProblem::PathProblem(const HorizonSettings& settings)
-    : settings_(settings),
+    : settings_(checked(settings)),
       steps_per_leg_(std::max(1, static_cast<int>(std::lround(settings.time / settings.waypoints / settings.step)))),
       steps_(steps_per_leg_ * settings.waypoints),
       lower_(index(3 * settings.waypoints), -1.0),
       upper_(lower_.size(), 1.0),
+      speed_(index(steps_ + 1)),
       undisturbed_(index(steps_ + 1)),
       ahead_(index(settings.waypoints)),
       behind_(ahead_.size()),
       aside_(ahead_.size()) {
-  assert(settings.waypoints > 0 && settings.step > 0.0 && steps_ <= kMaxSteps);
+  if (steps_ > kMaxSteps)
+    throw std::invalid_argument("horizon: " + std::to_string(steps_) + " steps of time / step; at most " +
+                                std::to_string(kMaxSteps));
 }
 
 void PathProblem::prepare(const PathRequest& request) {
@@ -58,22 +69,22 @@ void PathProblem::prepare(const PathRequest& request) {
 void PathProblem::undisturbed_flight() {
   const VehicleLimits& vehicle = request_.vehicle;
   const double climb_share = std::abs(frame_.axis.z());
-  const double cruise =
-      climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
+  cruise_ = climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
   const double change = settings_.acceleration_share * vehicle.max_acceleration * settings_.step;
   double distance = 0.0;
   double speed = std::clamp(request_.velocity.dot(frame_.axis), 0.0, vehicle.max_speed);
   undisturbed_time_ = 0.0;
   for (int step = 1; step <= steps_; ++step) {
     const double left = frame_.length - distance;
-    const double wish = std::min(cruise, std::sqrt(2.0 * settings_.braking * left));
+    const double wish = std::min({cruise_, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
     const double next = std::clamp(wish, speed - change, speed + change);
     distance = std::min(frame_.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
     if (frame_.length - distance > kNear) undisturbed_time_ = step * settings_.step;
     undisturbed_[index(step)] = distance;
+    speed_[index(step)] = speed;
   }
-  undisturbed_time_ += (frame_.length - distance) / cruise;
+  undisturbed_time_ += (frame_.length - distance) / cruise_;
   for (int k = 0; k < settings_.waypoints; ++k) {
     const int step = (k + 1) * steps_per_leg_;
     const double t = step * settings_.step;
@@ -155,8 +166,7 @@ void PathProblem::fly(std::span<const double> x, const Visit& visit) const {
     for (int i = 0; i < steps_per_leg_; ++i) {
       const int step = leg * steps_per_leg_ + i;
       const Vec3 wished = undisturbed(step) + begin + i * settings_.step * drift;
-      const double speed = (undisturbed_[index(step + 1)] - undisturbed_[index(step)]) / settings_.step;
-      advance(flight, speed * frame_.axis + drift + (wished - flight.position) / kCatchUp);
+      advance(flight, speed_[index(step + 1)] * frame_.axis + drift + (wished - flight.position) / kCatchUp);
       visit(step + 1, flight);
     }
     begin = end;
@@ -173,6 +183,16 @@ void PathProblem::evaluate(std::span<const double> x, std::span<Cost> costs) con
   }
 }
 
+// The way from the end of the horizon to the target: first to a stop, as far as braking takes, then straight on (or
+// back, where the target was overrun). Without the first part a path that comes fast would be the shorter one.
+double PathProblem::straight_rest(const Vec3& before, const Vec3& end) const {
+  const Vec3 last = end - before;
+  const double speed = last.norm() / settings_.step;
+  const double stopping = speed * speed / (2.0 * settings_.acceleration_share * request_.vehicle.max_acceleration);
+  const Vec3 stop = speed > 0.0 ? Vec3(end + last * (stopping / last.norm())) : end;
+  return stopping + (request_.target - stop).norm();
+}
+
 Cost PathProblem::cost_of_positions(std::span<const Vec3> positions) const {
   Cost cost;
   double length = 0.0;
@@ -187,11 +207,10 @@ Cost PathProblem::cost_of_positions(std::span<const Vec3> positions) const {
     cost.violation += distance_outside(request_.volume, to) * settings_.step;
     add_obstacles(step, from, to, cost);
   }
-  const double rest = (request_.target - positions.back()).norm();
-  if (arrival == horizon()) arrival += rest / request_.vehicle.cruise_speed;
+  const double rest = straight_rest(positions[index(steps_ - 1)], positions.back());
+  if (arrival == horizon()) arrival += rest / cruise_;
   const double lost = std::max(0.0, arrival - undisturbed_time_);
-  cost.f[0] = length + rest + settings_.time_weight * request_.vehicle.cruise_speed * lost +
-              settings_.deviation_weight * deviation / steps_;
+  cost.f[0] = length + rest + settings_.time_weight * cruise_ * lost + settings_.deviation_weight * deviation / steps_;
 
   Vec3 direction = request_.velocity;
   const Vec3* corner = &positions[0];

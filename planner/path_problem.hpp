@@ -39,7 +39,7 @@ struct PathRequest {
 /// margin, and for leaving the volume.
 class PathProblem final : public Problem {
  public:
-  /// Precondition: step and time of the settings are positive, with at least one step in a leg.
+  /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.
   explicit PathProblem(const HorizonSettings& settings);
 
   /// Prepares a plan: the frame, undisturbed flight, and at every step of the horizon the obstacles that can be met.
@@ -85,6 +85,7 @@ class PathProblem final : public Problem {
   void undisturbed_flight();
   void predict_obstacles();
   void fly_to_target(TimedPath& path, Flight flight) const;
+  [[nodiscard]] double straight_rest(const Vec3& before, const Vec3& end) const;
   [[nodiscard]] Cost cost_of_positions(std::span<const Vec3> positions) const;
   void add_obstacles(int step, const Vec3& from, const Vec3& to, Cost& cost) const;
 
@@ -94,6 +95,8 @@ class PathProblem final : public Problem {
   int steps_per_leg_;
   int steps_;
   std::vector<double> lower_, upper_;
+  std::vector<double> speed_;                   // along the axis after each step
+  double cruise_ = 0.0;                         // along the axis, the climb limit considered
   std::vector<double> undisturbed_;             // distance along the axis after each step
   std::vector<double> ahead_, behind_, aside_;  // how far a variable of ±1 reaches at each waypoint, m
   double undisturbed_time_ = 0.0;               // to the target

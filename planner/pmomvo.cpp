@@ -41,6 +41,8 @@ Pmomvo::Pmomvo(const OptimizerSettings& settings, int dimension, int objectives)
 
 const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial, std::uint64_t seed,
                          std::uint64_t stream, const Budget& budget, WorkerPool& pool) {
+  if (budget.generations < 1)
+    throw std::invalid_argument("generations: " + std::to_string(budget.generations) + " is not at least 1");
   const auto slaves = static_cast<std::uint32_t>(slaves_.size());
   pool.run(slaves, [&](std::uint32_t j) { slaves_[j].reset(problem, RandomStream(seed, stream, j)); });
   place_initial(initial);
@@ -58,6 +60,7 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
       }
     });
     done = stop;
+    if (done >= budget.stop_after) break;
     if (done < budget.generations && budget.expired()) {
       report_.deadline_reached = true;
       break;

@@ -115,19 +115,39 @@ struct ObstacleAt {
   }
 };
 
+/// How long after `tracks_time` the track's acceleration is believed.
+double believed(const Track& track, const VerifierInput& input) {
+  const double left = input.acceleration_trust - track.age;
+  return left > 0.0 ? left : 0.0;
+}
+
+bool well_formed(const VerifierInput& input) {
+  bool good = !input.path.empty() && std::isfinite(input.vehicle_radius);
+  double before = -kInfinity;
+  for (const TimedPoint& point : input.path) {
+    good = good && point.position.allFinite() && std::isfinite(point.t) && point.t > before;
+    before = point.t;
+  }
+  for (const Track& track : input.tracks) {
+    good = good && track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
+           std::isfinite(track.radius) && std::isfinite(track.age);
+  }
+  return good;
+}
+
 /// One vehicle segment against one track, split where the prediction stops accelerating.
 void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track, const VerifierInput& input,
                    Verification& result) {
   const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
   const double end = std::min(b.t, input.until);
-  const double change = input.tracks_time + input.acceleration_trust;
+  const double trust = believed(track, input);
+  const double change = input.tracks_time + trust;
   double t = a.t;
   while (t < end) {
     const double stop = (change > t && change < end) ? change : end;
     // Rounding must not put the instant at which the acceleration ends before its end.
-    const double elapsed =
-        t < change ? t - input.tracks_time : std::max(t - input.tracks_time, input.acceleration_trust);
-    const ObstacleAt obstacle(track, elapsed, input.acceleration_trust);
+    const double elapsed = t < change ? t - input.tracks_time : std::max(t - input.tracks_time, trust);
+    const ObstacleAt obstacle(track, elapsed, trust);
     const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
                            -0.5 * obstacle.acceleration, stop - t};
     fold(m, t, input.vehicle_radius + track.radius, track.id, result);
@@ -139,12 +159,14 @@ void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track,
 
 Verification verify(const VerifierInput& input) {
   Verification result;
+  result.valid = well_formed(input);
+  if (!result.valid) return result;
   for (const TimedPoint& point : input.path) {
-    if (!point.position.allFinite() || !input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
+    if (!input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
   }
   for (const Track& track : input.tracks) {
     if (input.path.size() == 1) {
-      const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, input.acceleration_trust);
+      const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, believed(track, input));
       fold({input.path[0].position - obstacle.position, Vec3::Zero(), Vec3::Zero(), 0.0}, input.path[0].t,
            input.vehicle_radius + track.radius, track.id, result);
     }

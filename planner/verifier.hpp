@@ -20,8 +20,10 @@ struct Verification {
   std::optional<double> first_contact;  ///< first time at which a clearance falls below zero
   double contact_speed = 0.0;           ///< relative speed at the first contact
   bool inside_volume = true;            ///< the whole path lies in the volume
+  bool valid = true;                    ///< the input could be judged: numbers finite, times increasing, a path there
 
-  [[nodiscard]] bool free() const { return !first_contact && inside_volume; }
+  /// What could not be judged is not free.
+  [[nodiscard]] bool free() const { return valid && !first_contact && inside_volume; }
 };
 
 struct VerifierInput {
@@ -30,7 +32,7 @@ struct VerifierInput {
   double tracks_time = 0.0;          ///< not after the path's first time
   double vehicle_radius = 0.0;
   Box volume;
-  double acceleration_trust = kInfinity;  ///< as in predict_position
+  double acceleration_trust = kInfinity;  ///< as in predict_position, from the measurement on
   double until = kInfinity;               ///< path time up to which obstacles count
 };
 

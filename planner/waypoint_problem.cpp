@@ -33,7 +33,7 @@ void WaypointProblem::prepare(const Step& step, std::span<const Track> tracks) {
     if (settings_.constraint == Constraint::kPaper || (track.position - step.from).norm() <= touch)
       near_.push_back(track);
   }
-  find_narrow_passes(near_);
+  find_narrow_passes(tracks);
 }
 
 void WaypointProblem::find_narrow_passes(std::span<const Track> tracks) {

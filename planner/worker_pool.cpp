@@ -56,8 +56,10 @@ void WorkerPool::run_erased(std::uint32_t count, const void* context, Call call)
       if (left != 0) pending_.wait(left, std::memory_order_acquire);
     }
   }
+  if (!failed_.load(std::memory_order_acquire)) return;
   const std::scoped_lock lock(failure_mutex_);
-  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  failed_.store(false, std::memory_order_relaxed);
+  std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 bool WorkerPool::work_once() {
@@ -72,6 +74,7 @@ bool WorkerPool::work_once() {
       if (!failure_ || task < failed_task_) {
         failure_ = std::current_exception();
         failed_task_ = task;
+        failed_.store(true, std::memory_order_release);
       }
     }
     if (pending_.fetch_sub(1, std::memory_order_acq_rel) == 1) pending_.notify_all();

@@ -43,6 +43,7 @@ class WorkerPool {
   std::atomic<std::uint32_t> pending_{0};
   const void* context_ = nullptr;  // written between rounds, read after a task is taken
   Call call_ = nullptr;
+  std::atomic<bool> failed_{false};
   std::mutex failure_mutex_;  // guards failure_ and failed_task_
   std::exception_ptr failure_;
   std::uint32_t failed_task_ = 0;

@@ -2,6 +2,7 @@
 // The jink executable: picks the subcommand and turns what goes wrong into one line and an exit code.
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,8 @@ int main(int argc, char** argv) {
     return complain(error.what());
   } catch (const UsageError& error) {
     return complain(error.what());
+  } catch (const std::invalid_argument& error) {
+    return complain(error.what());  // settings that no range check of a single key can refuse
   } catch (const std::exception& error) {
     std::fprintf(stderr, "jink: %s\n", error.what());
     return kExitFailed;

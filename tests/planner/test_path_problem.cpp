@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -119,7 +121,7 @@ TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
 
 // "With all of them 0 it is undisturbed flight": straight on, at cruise speed, braking for the target, without the
 // follower's overshoot.
-TEST(PathProblem, DISABLED_ZeroVariablesDoNotOvershootSpeedOrTarget) {
+TEST(PathProblem, ZeroVariablesDoNotOvershootSpeedOrTarget) {
   for (const Vec3& target : kTargets) {
     double cruise = 0.0;
     TimedPath path;
@@ -447,4 +449,14 @@ TEST(PathProblem, ManoeuvreGoesAsideAndReturns) {
 }
 
 }  // namespace
+
+TEST(PathProblem, RefusesMoreStepsThanItHasRoomFor) {
+  HorizonSettings settings;
+  settings.time = 30.0;
+  settings.step = 0.1;
+  EXPECT_THROW(PathProblem{settings}, std::invalid_argument);
+  settings.step = 0.0;
+  EXPECT_THROW(PathProblem{settings}, std::invalid_argument);
+}
+
 }  // namespace jink::planner

@@ -178,15 +178,22 @@ TEST(Pmomvo, ExpiredDeadlineStillGivesTheFirstCycle) {
   EXPECT_EQ(optimizer.report().evaluations, 10 * 50);
 }
 
-// Budget: "the generations that it then reports repeat it". WEP and TDR follow the fraction of the generations asked
-// for, so a run that was stopped after 10 of 40 is another one than a run of 10.
-TEST(Pmomvo, DISABLED_RunStoppedByDeadlineIsRepeatedByItsGenerations) {
+// Budget: the same schedule, stopped after the generations that the stopped run reports, repeats it.
+TEST(Pmomvo, RunStoppedByDeadlineIsRepeatedByItsGenerations) {
   const Zdt1 problem;
   WorkerPool pool(1);
   Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
   const Front stopped = optimizer.run(problem, {}, 1, 0, {40, Budget::Time::min()}, pool);
   const int generations = optimizer.report().generations;
-  expect_same(stopped, optimizer.run(problem, {}, 1, 0, {generations, Budget::Time::max()}, pool));
+  expect_same(stopped, optimizer.run(problem, {}, 1, 0, {40, Budget::Time::max(), generations}, pool));
+  EXPECT_FALSE(optimizer.report().deadline_reached);
+}
+
+TEST(Pmomvo, RefusesABudgetWithoutGenerations) {
+  const Zdt1 problem;
+  WorkerPool pool(1);
+  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  EXPECT_THROW(optimizer.run(problem, {}, 1, 0, {0}, pool), std::invalid_argument);
 }
 
 TEST(Pmomvo, InitialSolutionsAppear) {

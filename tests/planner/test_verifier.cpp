@@ -198,7 +198,7 @@ RandomCase random_case(std::uint64_t seed) {
     t += random.uniform(0.2, 1.5);
   }
   for (std::uint64_t id = 0; id < 3; ++id) {
-    Track track = moving(vec(5.0), vec(4.0), random.uniform(0.3, 1.5), id);
+    Track track = moving(vec(5.0), vec(4.0), random.uniform(0.5, 2.5), id);
     track.acceleration = vec(3.0);
     c.tracks.push_back(track);
   }
@@ -248,4 +248,46 @@ TEST(Verifier, MatchesDenseSampling) {
 }
 
 }  // namespace
+
+// What cannot be judged is not free: no path, a number that is not finite, times that do not increase.
+TEST(Verifier, WhatCannotBeJudgedIsNotFree) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Vec3 origin(0, 0, 0);
+  const Vec3 east(1, 0, 0);
+  const TimedPath good{{0.0, origin, Vec3::Zero(), Vec3::Zero()}, {1.0, east, Vec3::Zero(), Vec3::Zero()}};
+  Track far;
+  far.position = {100, 0, 0};
+  far.radius = 1.0;
+  const std::vector<Track> tracks{far};
+  ASSERT_TRUE(verify({good, tracks, 0.0, 0.3, {}}).free());
+
+  EXPECT_FALSE(verify({TimedPath{}, tracks, 0.0, 0.3, {}}).free());
+  EXPECT_FALSE(verify({TimedPath{{0.0, origin, Vec3::Zero(), Vec3::Zero()}, {0.0, east, Vec3::Zero(), Vec3::Zero()}},
+                       tracks,
+                       0.0,
+                       0.3,
+                       {}})
+                   .free());
+  EXPECT_FALSE(verify({TimedPath{{nan, origin, Vec3::Zero(), Vec3::Zero()}}, tracks, 0.0, 0.3, {}}).free());
+  EXPECT_FALSE(verify({TimedPath{{0.0, Vec3(nan, 0, 0), Vec3::Zero(), Vec3::Zero()}}, tracks, 0.0, 0.3, {}}).free());
+  EXPECT_FALSE(verify({good, tracks, 0.0, nan, {}}).free());
+  std::vector<Track> bad = tracks;
+  bad[0].velocity.y() = nan;
+  EXPECT_FALSE(verify({good, bad, 0.0, 0.3, {}}).free());
+}
+
+// An acceleration is believed for `trust` seconds from the measurement: one that is 0.6 s old has 0.1 s of 0.7 s left.
+TEST(Verifier, TrustCountsFromTheMeasurement) {
+  Track track;
+  track.position = {10, 0, 0};
+  track.acceleration = {-20, 0, 0};
+  track.radius = 0.5;
+  track.age = 0.6;
+  const TimedPath path{{0.0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()},
+                       {1.0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  const Verification found = verify({path, std::vector<Track>{track}, 0.0, 0.3, {}, 0.7});
+  // After 0.1 s: -0.1 m, -2 m/s; at 1 s: 10 - 0.1 - 1.8 = 8.1 m.
+  EXPECT_NEAR(found.min_clearance, 8.1 - 0.8, 1e-9);
+}
+
 }  // namespace jink::planner

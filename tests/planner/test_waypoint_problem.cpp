@@ -220,4 +220,29 @@ TEST(WaypointProblem, LeavesOutOnlyObstaclesThatCannotBeMet) {
 }
 
 }  // namespace
+
+// The pass lies within reach though one of the two that make it does not.
+TEST(WaypointProblem, NarrowPassCountsWhereOneOfThePairIsOutOfReach) {
+  PaperSettings settings;
+  VehicleLimits vehicle;
+  vehicle.length = 8.0;  // a virtual sphere of 4 m, which reaches far beyond the pair
+  WaypointProblem problem(settings, vehicle);
+  WaypointProblem::Step step;
+  step.from = {0, 0, 5};
+  step.direction = {1, 0, 0};
+  step.target = {10, 0, 5};
+  step.base = {1, 0, 5};
+  step.lateral1 = {0, 1, 0};
+  step.lateral2 = {0, 0, 1};
+  step.lower = {-0.1, -0.1};
+  step.upper = {0.1, 0.1};
+  std::vector<Track> tracks(2);
+  tracks[0].position = {1, 2.0, 5};
+  tracks[1].position = {1, 3.2, 5};
+  for (Track& track : tracks) track.radius = 0.5;
+  problem.prepare(step, tracks);
+  ASSERT_EQ(problem.virtual_spheres().size(), 1U);
+  EXPECT_GT(problem.violation({1, 0, 5}), 0.0);
+}
+
 }  // namespace jink::planner
