@@ -186,7 +186,7 @@ Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std
   double t = 0.0;
   for (std::uint64_t number = 0;; ++number) {
     for (std::size_t i = 0; i < now.size(); ++i) now[i] = predict(request.path.tracks[i], t, from.acceleration_trust);
-    const Plan part = planner.plan(from, previous, seed, number, budget, pool);
+    Plan part = planner.plan(from, previous, seed, number, budget, pool);
     if (part.status == PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;
     whole.evaluations += part.evaluations;

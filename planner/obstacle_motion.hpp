@@ -15,8 +15,7 @@ namespace jink::planner {
 inline Vec3 predict_position(const Track& track, double t, double trust = kInfinity) {
   const double believed = std::max(0.0, trust - track.age);
   const double accelerated = std::min(t, believed);
-  const Vec3 position =
-      track.position + accelerated * track.velocity + 0.5 * accelerated * accelerated * track.acceleration;
+  Vec3 position = track.position + accelerated * track.velocity + 0.5 * accelerated * accelerated * track.acceleration;
   if (t <= believed) return position;
   return position + (t - accelerated) * (track.velocity + accelerated * track.acceleration);
 }

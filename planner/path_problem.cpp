@@ -229,7 +229,7 @@ void PathProblem::add_obstacles(int step, const Vec3& from, const Vec3& to, Cost
   const double weight = settings_.step / (0.5 + step * settings_.step);  // what is near in time counts more
   const std::size_t now = index(step) * kept_;
   const std::size_t next = now + kept_;
-  std::array<double, kChunk> squared;
+  std::array<double, kChunk> squared{};
   for (std::size_t begin = 0; begin < kept_; begin += kChunk) {
     const std::size_t count = std::min(kChunk, kept_ - begin);
     // The swept test of geometry.hpp, laid out so that the compiler does several obstacles at once.

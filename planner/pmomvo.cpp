@@ -35,7 +35,7 @@ Pmomvo::Pmomvo(const OptimizerSettings& settings, int dimension, int objectives)
     slaves_.emplace_back(static_cast<std::size_t>(universes), dimension, objectives, settings);
   }
   front_.dimension = dimension;
-  shared_.reserve(static_cast<std::size_t>(slaves * dimension));
+  shared_.reserve(static_cast<std::size_t>(slaves) * static_cast<std::size_t>(dimension));
   shared_costs_.reserve(static_cast<std::size_t>(slaves));
 }
 

@@ -28,7 +28,7 @@ struct MonotonePieces {
 
   explicit MonotonePieces(const RelativeMotion& m) {
     std::array<double, 4> split{0.0, m.duration, m.duration, m.duration};
-    int splits = 1;
+    std::size_t splits = 1;
     // slope(t)/2 = c0 + c1 t + c2 t² + c3 t³
     const double c1 = m.p1.squaredNorm() + 2.0 * m.p0.dot(m.p2);
     const double c2 = 3.0 * m.p1.dot(m.p2);
@@ -37,15 +37,12 @@ struct MonotonePieces {
     if (c3 > 0.0 && discriminant > 0.0) {
       const double root = std::sqrt(discriminant);
       for (const double s : {(-c2 - root) / (3.0 * c3), (-c2 + root) / (3.0 * c3)}) {
-        if (s > split[static_cast<std::size_t>(splits - 1)] && s < m.duration)
-          split[static_cast<std::size_t>(splits++)] = s;
+        if (s > split[splits - 1] && s < m.duration) split[splits++] = s;
       }
     }
-    split[static_cast<std::size_t>(splits)] = m.duration;
+    split[splits] = m.duration;
     add(0.0);
-    for (int i = 0; i < splits; ++i) {
-      add_root(m, split[static_cast<std::size_t>(i)], split[static_cast<std::size_t>(i + 1)]);
-    }
+    for (std::size_t i = 0; i < splits; ++i) add_root(m, split[i], split[i + 1]);
     add(m.duration);
   }
 
