@@ -64,17 +64,16 @@ class Teller final : public bridge::FlightObserver {
 
 nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
                                       const config::Settings& settings) {
-  const auto vector = [](const planner::Vec3& v) { return nlohmann::ordered_json::array({v.x(), v.y(), v.z()}); };
   const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
   return {
       {"mission", mission.name},
       {"seed", options.common.seed},
-      {"target", vector(mission.waypoints.back())},
+      {"target", vector_json(mission.waypoints.back())},
       {"vehicle",
        {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
-      {"world",
-       bounded ? nlohmann::ordered_json{{"min", vector(mission.geofence.min)}, {"max", vector(mission.geofence.max)}}
-               : nullptr},
+      {"world", bounded ? nlohmann::ordered_json{{"min", vector_json(mission.geofence.min)},
+                                                 {"max", vector_json(mission.geofence.max)}}
+                        : nullptr},
       {"parameters", parameters_of(settings)}};
 }
 

@@ -6,15 +6,12 @@
 #include "tools/command_line.hpp"
 
 namespace jink::tools {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector(const planner::Vec3& v) {
+Json vector_json(const planner::Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
-
-}  // namespace
 
 FlightLog::FlightLog(const std::filesystem::path& file, Json header) : file_(file), out_(file) {
   if (!out_) throw UsageError("--log: '" + file.string() + "' cannot be written");
@@ -26,8 +23,8 @@ FlightLog::FlightLog(const std::filesystem::path& file, Json header) : file_(fil
 void FlightLog::on_state(double t, const bridge::VehicleState& state) {
   write({{"type", "state"},
          {"t", t},
-         {"p", vector(state.position)},
-         {"v", vector(state.velocity)},
+         {"p", vector_json(state.position)},
+         {"v", vector_json(state.velocity)},
          {"armed", state.armed},
          {"mode", bridge::to_string(state.mode)}});
 }
@@ -36,9 +33,9 @@ void FlightLog::on_tracks(double t, const std::vector<planner::Track>& tracks) {
   Json list = Json::array();
   for (const planner::Track& track : tracks) {
     list.push_back({{"id", track.id},
-                    {"p", vector(track.position)},
-                    {"v", vector(track.velocity)},
-                    {"a", vector(track.acceleration)},
+                    {"p", vector_json(track.position)},
+                    {"v", vector_json(track.velocity)},
+                    {"a", vector_json(track.acceleration)},
                     {"radius", track.radius},
                     {"position_sigma", track.position_sigma},
                     {"velocity_sigma", track.velocity_sigma},
@@ -66,9 +63,9 @@ void FlightLog::on_plan(double t, const bridge::PlanResult& result) {
 void FlightLog::on_setpoint(double t, const bridge::Setpoint& setpoint) {
   write({{"type", "setpoint"},
          {"t", t},
-         {"p", vector(setpoint.position)},
-         {"v", vector(setpoint.velocity)},
-         {"a", vector(setpoint.acceleration)},
+         {"p", vector_json(setpoint.position)},
+         {"v", vector_json(setpoint.velocity)},
+         {"a", vector_json(setpoint.acceleration)},
          {"yaw", setpoint.yaw}});
 }
 
@@ -78,13 +75,13 @@ void FlightLog::on_event(double t, std::string_view name, const std::string& det
 
 void FlightLog::on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity,
                          const sim::World& world) {
-  write({{"type", "truth"}, {"t", t}, {"p", vector(position)}, {"v", vector(velocity)}});
+  write({{"type", "truth"}, {"t", t}, {"p", vector_json(position)}, {"v", vector_json(velocity)}});
   for (int i = 0; i < world.obstacle_count(); ++i) {
     const planner::Sphere sphere = world.sphere(i, t);
     write({{"type", "obstacles"},
            {"t", t},
            {"id", sim::World::id(i)},
-           {"p", vector(sphere.center)},
+           {"p", vector_json(sphere.center)},
            {"radius", sphere.radius}});
   }
 }

@@ -45,6 +45,9 @@ class FlightLog final : public bridge::FlightObserver, public sim::TruthObserver
   std::ofstream out_;
 };
 
+/// [x, y, z].
+nlohmann::ordered_json vector_json(const planner::Vec3& v);
+
 /// The header's `parameters`: every setting by its key.
 nlohmann::ordered_json parameters_of(const config::Settings& settings);
 

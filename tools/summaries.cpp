@@ -19,10 +19,6 @@ Json percentiles_json(const std::vector<double>& values) {
   return {{"p50", p->p50}, {"p99", p->p99}, {"max", p->max}};
 }
 
-Json vector(const planner::Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 std::string number(const Json& value, const char* unit) {
   return value.is_number() ? fmt::format("{:.2f} {}", value.get<double>(), unit) : std::string("unknown");
 }
@@ -76,15 +72,16 @@ std::string describe_flight(const Json& s) {
 Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const config::Settings& settings) {
   Json header{{"scenario", scenario.name},
               {"seed", seed},
-              {"start", vector(scenario.start)},
-              {"target", vector(scenario.target)},
+              {"start", vector_json(scenario.start)},
+              {"target", vector_json(scenario.target)},
               {"time_limit", scenario.time_limit},
               {"vehicle",
                {{"name", scenario.vehicle_name},
                 {"radius", scenario.vehicle.radius},
                 {"max_speed", scenario.vehicle.max_speed}}},
               {"world", nullptr}};
-  if (scenario.world) header["world"] = {{"min", vector(scenario.world->min)}, {"max", vector(scenario.world->max)}};
+  if (scenario.world)
+    header["world"] = {{"min", vector_json(scenario.world->min)}, {"max", vector_json(scenario.world->max)}};
   header["parameters"] = parameters_of(settings);
   return header;
 }
