@@ -10,7 +10,7 @@ namespace jink::bridge {
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock)
     : settings_(settings),
       clock_(clock),
-      planner_(settings.horizon),
+      planner_(settings.horizon, settings.optimizer),
       pool_(settings.threads),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -73,7 +73,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
 }
 
 VirtualPlanner::VirtualPlanner(const PlannerTaskSettings& settings, double latency)
-    : settings_(settings), latency_(latency), planner_(settings.horizon), pool_(settings.threads) {}
+    : settings_(settings), latency_(latency), planner_(settings.horizon, settings.optimizer), pool_(settings.threads) {}
 
 void VirtualPlanner::start(PlanJob job) {
   assert(!result_);

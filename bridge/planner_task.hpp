@@ -48,6 +48,7 @@ class PlannerTask {
 
 struct PlannerTaskSettings {
   planner::HorizonSettings horizon;
+  planner::OptimizerSettings optimizer;
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: one for each core
 };

@@ -13,6 +13,7 @@ namespace {
 using planner::Axis;
 using planner::Constraint;
 using planner::HorizonSettings;
+using planner::Operators;
 using planner::OptimizerSettings;
 using planner::PaperSettings;
 
@@ -23,11 +24,17 @@ template <>
 constexpr std::array<std::string_view, 2> kSpellings<Constraint> = {"paper", "swept"};
 template <>
 constexpr std::array<std::string_view, 2> kSpellings<Axis> = {"world_x", "path"};
+template <>
+constexpr std::array<std::string_view, 4> kSpellings<Operators> = {"printed", "common", "corrected", "adaptive"};
+template <>
+constexpr std::array<std::string_view, 2> kSpellings<bool> = {"false", "true"};
 
 template <class Section>
 struct Field {
   std::string_view name;
-  std::variant<int Section::*, double Section::*, Constraint Section::*, Axis Section::*> member;
+  std::variant<int Section::*, double Section::*, bool Section::*, Constraint Section::*, Axis Section::*,
+               Operators Section::*>
+      member;
   Range range;  // of numbers; of no meaning to the others
 };
 
@@ -43,7 +50,9 @@ constexpr Field<OptimizerSettings> kOptimizer[] = {
     {"wep_min", &OptimizerSettings::wep_min, closed(0, 1)},
     {"wep_max", &OptimizerSettings::wep_max, closed(0, 1)},
     {"exploitation", &OptimizerSettings::exploitation, above(0, 100)},
-    {"crowding", &OptimizerSettings::crowding, above(1, 100)},
+    {"operators", &OptimizerSettings::operators, kNoRange},
+    {"focus", &OptimizerSettings::focus, closed(0, 1)},
+    {"opposition", &OptimizerSettings::opposition, kNoRange},
 };
 
 constexpr Field<PaperSettings> kPaper[] = {
@@ -82,6 +91,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"weight_length", &HorizonSettings::weight_length, closed(0, 1000)},
     {"weight_steering", &HorizonSettings::weight_steering, closed(0, 1000)},
     {"weight_clearance", &HorizonSettings::weight_clearance, closed(0, 1000)},
+    {"seeding", &HorizonSettings::seeding, kNoRange},
     {"keep_ratio", &HorizonSettings::keep_ratio, below(0, 1)},
 };
 

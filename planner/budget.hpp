@@ -7,15 +7,16 @@
 
 namespace jink::planner {
 
-/// Generations alone make a run repeatable bit by bit. With a deadline too, the run stops after the cycle in which the
-/// deadline passes; the same `generations` with `stop_after` set to the generations that it then reports repeat it.
+/// Generations alone make a run repeatable bit by bit. With a deadline too, the run stops after the generation in which
+/// the deadline passes; the same `generations` with `stop_after` set to the generations that it then reports repeat it.
 struct Budget {
   using Time = std::chrono::steady_clock::time_point;
   int generations = 100;  ///< the schedule's length (WEP, TDR, cycles)
   Time deadline = Time::max();
-  int stop_after = std::numeric_limits<int>::max();  ///< the run ends with the cycle that reaches so many
+  int stop_after = std::numeric_limits<int>::max();  ///< the run ends with this generation
 
-  [[nodiscard]] bool expired() const { return deadline != Time::max() && std::chrono::steady_clock::now() >= deadline; }
+  [[nodiscard]] bool has_deadline() const { return deadline != Time::max(); }
+  [[nodiscard]] bool expired() const { return has_deadline() && std::chrono::steady_clock::now() >= deadline; }
 };
 
 }  // namespace jink::planner

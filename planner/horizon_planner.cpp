@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <span>
 
+#include "planner/manoeuvres.hpp"
 #include "planner/obstacle_motion.hpp"
 #include "planner/topsis.hpp"
 
@@ -13,9 +15,10 @@ namespace jink::planner {
 namespace {
 
 constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
+constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
+constexpr double kSeedClearance = 0.2;     // m, that manoeuvres aim for beyond the margin: the vehicle cuts corners
 
-OptimizerSettings optimizer_settings(const HorizonSettings& s) {
-  OptimizerSettings o;
+OptimizerSettings sized(OptimizerSettings o, const HorizonSettings& s) {
   o.slaves = s.slaves;
   o.sharing = s.sharing;
   o.population = s.population;
@@ -78,44 +81,54 @@ void conclude(const PathRequest& request, double horizon, Plan& plan) {
 
 }  // namespace
 
-HorizonPlanner::HorizonPlanner(const HorizonSettings& settings)
+HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer)
     : settings_(settings),
       problem_(settings),
-      optimizer_(optimizer_settings(settings), problem_.dimension(), problem_.objectives()) {}
+      optimizer_(sized(optimizer, settings), problem_.dimension(), problem_.objectives()) {}
 
-// What a pilot would try first: straight on, stop, slower, faster, and aside in four directions.
-void HorizonPlanner::seed_manoeuvres(const PathRequest& request, const TimedPath& previous) {
-  initial_.clear();
-  const auto add = [&]() -> std::span<double> {
-    const auto d = static_cast<std::size_t>(problem_.dimension());
+// Straight on, the plan before, and what a pilot would try first.
+void HorizonPlanner::start_from(const PathRequest& request, const TimedPath& previous) {
+  const auto d = static_cast<std::size_t>(problem_.dimension());
+  initial_.assign(d, 0.0);
+  const TimedPath undisturbed = problem_.motion(initial_);
+  const auto add = [&](const TimedPath& path) {
     initial_.resize(initial_.size() + d);
-    return {initial_.data() + initial_.size() - d, d};
+    problem_.imitate(path, {initial_.data() + initial_.size() - d, d});
   };
-  problem_.manoeuvre(0.0, 0.0, 0.0, add());
-  if (!previous.empty()) problem_.imitate(previous, add());
-  problem_.imitate({{0.0, request.position, Vec3::Zero(), Vec3::Zero()}}, add());
-  for (const double share : {-0.5, -0.25, -0.1, 0.25, 0.75}) problem_.manoeuvre(share, 0.0, 0.0, add());
-  for (const double distance : {0.7, 1.5, 3.0}) {
-    for (const auto& [left, up] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
-      problem_.manoeuvre(0.0, distance * left, distance * up, add());
-    }
-  }
+  if (!previous.empty()) add(previous);
+  if (!settings_.seeding) return;
+  std::vector<double> times;
+  for (int k = 1; k <= settings_.waypoints; ++k) times.push_back(k * problem_.horizon() / settings_.waypoints);
+  for (const TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) add(path);
 }
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                           std::uint64_t number, const Budget& budget, WorkerPool& pool) {
   if (!finite(request)) return {};
   problem_.prepare(request);
-  seed_manoeuvres(request, previous);
-  const Front& front = optimizer_.run(problem_, initial_, seed, number, budget, pool);
+  start_from(request, previous);
+  Budget affordable = budget;
+  affordable.generations = affordable_generations(budget);
+  const auto begun = std::chrono::steady_clock::now();
+  const Front& front = optimizer_.run(problem_, initial_, seed, number, affordable, pool);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  pace_ = took.count() / optimizer_.report().generations;
   Plan plan = choose(request, front);
   plan.evaluations = optimizer_.report().evaluations;
   plan.generations = optimizer_.report().generations;
+  plan.schedule = affordable.generations;
   plan.deadline_reached = optimizer_.report().deadline_reached;
   for (const Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
   if (!previous.empty()) keep_previous(request, previous, plan);
   conclude(request, problem_.horizon(), plan);
   return plan;
+}
+
+// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
+int HorizonPlanner::affordable_generations(const Budget& budget) const {
+  if (!budget.has_deadline() || pace_ <= 0.0) return budget.generations;
+  const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
+  return std::clamp(static_cast<int>(std::min(kDeadlineShare * left.count() / pace_, 1e6)), 1, budget.generations);
 }
 
 // TOPSIS looks for a compromise between the front's extremes, and a front's far end is no measure of what a detour may
@@ -136,13 +149,23 @@ Plan HorizonPlanner::choose(const PathRequest& request, const Front& front) cons
   const std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
   const std::vector<int> order = topsis_order(banded(front.costs), problem_.objectives(), weights);
   Plan best;
+  // True where there is nothing left to look for.
+  const auto consider = [&](std::span<const double> x, bool feasible) {
+    Plan plan;
+    plan.path = problem_.motion(x);
+    plan.verification = verify_until(plan.path, request, problem_.horizon());
+    const bool good = feasible && plan.verification.free();
+    if (good || best.path.empty() || less_harm(plan.verification, best.verification)) best = std::move(plan);
+    return good;
+  };
   for (std::size_t i = 0; i < std::min(order.size(), kMostVerified); ++i) {
     const auto candidate = static_cast<std::size_t>(order[i]);
-    Plan plan;
-    plan.path = problem_.motion(front.solution(candidate));
-    plan.verification = verify_until(plan.path, request, problem_.horizon());
-    if (front.costs[candidate].violation == 0.0 && plan.verification.free()) return plan;
-    if (best.path.empty() || less_harm(plan.verification, best.verification)) best = std::move(plan);
+    if (consider(front.solution(candidate), front.costs[candidate].violation == 0.0)) return best;
+  }
+  // The optimizer measures how deep and how long, harm is measured in when and how hard: the first ideas count too.
+  const auto d = static_cast<std::size_t>(problem_.dimension());
+  for (std::size_t at = 0; at < initial_.size() && !best.verification.free(); at += d) {
+    consider(std::span(initial_).subspan(at, d), false);
   }
   return best;
 }

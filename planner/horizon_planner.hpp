@@ -15,11 +15,13 @@
 namespace jink::planner {
 
 /// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits
-/// for the same request, previous plan, seed and generations, whatever the number of threads.
+/// for the same request, previous plan, seed and generations, whatever the number of threads. Where a deadline is
+/// given, the plan says how many generations were scheduled and done, and with these the plan can be repeated.
 class HorizonPlanner {
  public:
-  /// Throws std::invalid_argument for settings that Pmomvo refuses.
-  explicit HorizonPlanner(const HorizonSettings& settings);
+  /// `optimizer` gives the operators; its size (slaves, sharing, population, iterations) is that of `settings`. Throws
+  /// std::invalid_argument for settings that PathProblem or Pmomvo refuses.
+  explicit HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer = {});
 
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
   /// empty: none. It seeds the search, and it is kept where it is still free and a new plan is not clearly better.
@@ -34,7 +36,8 @@ class HorizonPlanner {
   [[nodiscard]] const HorizonSettings& settings() const { return settings_; }
 
  private:
-  void seed_manoeuvres(const PathRequest& request, const TimedPath& previous);
+  void start_from(const PathRequest& request, const TimedPath& previous);
+  [[nodiscard]] int affordable_generations(const Budget& budget) const;
   Plan choose(const PathRequest& request, const Front& front) const;
   [[nodiscard]] std::vector<Cost> banded(std::span<const Cost> costs) const;
   void keep_previous(const PathRequest& request, const TimedPath& previous, Plan& plan) const;
@@ -43,6 +46,7 @@ class HorizonPlanner {
   PathProblem problem_;
   Pmomvo optimizer_;
   std::vector<double> initial_;
+  double pace_ = 0.0;  // s per generation, of the plan before; 0: not known
 };
 
 struct OpenLoopRequest {

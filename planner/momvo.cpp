@@ -4,20 +4,25 @@
 #include <algorithm>
 #include <cassert>
 
-#include "planner/multiverse.hpp"
-
 namespace jink::planner {
+namespace {
+
+constexpr double kNarrowVariables = 3.0;  // that a narrow move changes, on average
+constexpr std::size_t kFocused = 3;       // leaders that focus looks at: the best in the first objective
+
+}  // namespace
 
 Momvo::Momvo(std::size_t universes, int dimension, int objectives, const OptimizerSettings& settings)
     : universes_(universes),
       dimension_(dimension),
       objectives_(objectives),
       settings_(settings),
-      archive_(static_cast<std::size_t>(settings.archive), dimension, objectives, settings.crowding),
+      archive_(static_cast<std::size_t>(settings.archive), dimension, objectives),
       ranking_(universes),
       x_(universes * static_cast<std::size_t>(dimension)),
       previous_(x_.size()),
-      costs_(universes) {
+      costs_(universes),
+      kinds_(universes, Move::kWide) {
   assert(universes > 0);
 }
 
@@ -27,59 +32,91 @@ void Momvo::reset(const Problem& problem, RandomStream random) {
   random_ = random;
   archive_.clear();
   order_ = {};
+  moves_ = {};
+  std::fill(kinds_.begin(), kinds_.end(), Move::kWide);
   const auto lower = problem.lower();
   const auto upper = problem.upper();
   for (std::size_t i = 0; i < universes_; ++i) {
     const auto x = universe(i);
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] = random_.uniform(lower[j], upper[j]);
+    const bool opposite = settings_.opposition && i % 2 == 1;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      x[j] = opposite ? lower[j] + upper[j] - universe(i - 1)[j] : random_.uniform(lower[j], upper[j]);
+    }
   }
 }
 
 void Momvo::place(std::size_t slot, std::span<const double> x) {
-  std::copy(x.begin(), x.end(), universe(slot % universes_).begin());
-}
-
-void Momvo::clamp() {
   const auto lower = problem_->lower();
   const auto upper = problem_->upper();
-  for (std::size_t i = 0; i < universes_; ++i) {
-    const auto x = universe(i);
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] = std::clamp(x[j], lower[j], upper[j]);
-  }
+  const auto to = universe(slot % universes_);
+  for (std::size_t j = 0; j < to.size(); ++j) to[j] = std::clamp(x[j], lower[j], upper[j]);
 }
 
 void Momvo::iterate(double fraction) {
   assert(problem_ != nullptr);
-  clamp();
   problem_->evaluate(x_, costs_);
   for (std::size_t i = 0; i < universes_; ++i) {
     make_rankable(costs_[i]);
-    archive_.add(universe(i), costs_[i], random_);
+    const bool added = archive_.add(universe(i), costs_[i], random_);
+    moves_.judge(kinds_[i], added);
   }
-  archive_.weigh();
+  archive_.settle(random_);
   order_ = ranking_.order(costs_, objectives_);
+  if (settings_.operators == Operators::kAdaptive) moves_.adapt();
   move(fraction);
 }
 
 void Momvo::move(double fraction) {
   const double wep = wormhole_probability(fraction, settings_);
   const double tdr = travelling_distance(fraction, settings_);
-  const auto lower = problem_->lower();
-  const auto upper = problem_->upper();
-  const auto d = static_cast<std::size_t>(dimension_);
   std::copy(x_.begin(), x_.end(), previous_.begin());
+  RandomStream random = random_;  // a local one stays in registers
   for (std::size_t position = 0; position < universes_; ++position) {
-    const auto x = universe(static_cast<std::size_t>(order_[position]));
-    const auto leader = archive_.x(archive_.draw(random_));
-    // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
-    const double inflation = universes_ > 1 ? static_cast<double>(position) / static_cast<double>(universes_ - 1) : 0.0;
-    for (std::size_t j = 0; j < d; ++j) {
-      if (random_.uniform() < inflation) {
-        const auto giver = static_cast<std::size_t>(order_[white_hole(universes_, random_)]);
-        x[j] = previous_[giver * d + j];
-      }
-      if (random_.uniform() < wep) x[j] = wormhole(leader[j], tdr, lower[j], upper[j], random_);
+    const auto i = static_cast<std::size_t>(order_[position]);
+    kinds_[i] = settings_.operators == Operators::kAdaptive ? moves_.draw(random) : Move::kWide;
+    if (kinds_[i] == Move::kNarrow) {
+      move_narrowly(i, tdr, random);
+    } else {
+      // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
+      const double last = universes_ > 1 ? static_cast<double>(universes_ - 1) : 1.0;
+      move_widely(i, static_cast<double>(position) / last, wep, tdr, random);
     }
+  }
+  random_ = random;
+}
+
+// White holes and wormholes. Every draw is made, used or not, and the outcome selected: cheaper than branches that
+// nobody can predict.
+void Momvo::move_widely(std::size_t i, double inflation, double wep, double tdr, RandomStream& random) {
+  const double* lower = problem_->lower().data();
+  const double* upper = problem_->upper().data();
+  const auto d = static_cast<std::size_t>(dimension_);
+  double* x = x_.data() + i * d;
+  const double* leader = archive_.x(archive_.draw(random)).data();
+  for (std::size_t j = 0; j < d; ++j) {
+    const auto giver = static_cast<std::size_t>(order_[white_hole(universes_, random)]);
+    const double through_wormhole = wormhole(leader[j], tdr, lower[j], upper[j], settings_.operators, random);
+    const auto [inflate, worm] = random.uniform_pair();
+    const double kept = inflate < inflation ? previous_[giver * d + j] : x[j];
+    x[j] = std::clamp(worm < wep ? through_wormhole : kept, lower[j], upper[j]);
+  }
+}
+
+// A leader, moved in a few variables by steps that are mostly small.
+void Momvo::move_narrowly(std::size_t i, double tdr, RandomStream& random) {
+  const double* lower = problem_->lower().data();
+  const double* upper = problem_->upper().data();
+  const auto d = static_cast<std::size_t>(dimension_);
+  double* x = x_.data() + i * d;
+  const auto [focused, which] = random.uniform_pair();
+  const std::size_t first = std::min(archive_.size(), kFocused);
+  const std::size_t member =
+      focused < settings_.focus ? static_cast<std::size_t>(which * static_cast<double>(first)) : archive_.draw(random);
+  const double* leader = archive_.x(member).data();
+  const double share = kNarrowVariables / static_cast<double>(d);
+  for (std::size_t j = 0; j < d; ++j) {
+    const double moved = narrow_wormhole(leader[j], tdr, lower[j], upper[j], random);
+    x[j] = random.uniform() < share ? std::clamp(moved, lower[j], upper[j]) : leader[j];
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planner/archive.hpp"
+#include "planner/multiverse.hpp"
 #include "planner/pareto.hpp"
 #include "planner/problem.hpp"
 #include "planner/random.hpp"
@@ -16,18 +17,19 @@ namespace jink::planner {
 
 /// A pure function of (problem, settings, seeds, random stream). All memory is taken at construction; reset() and
 /// iterate() allocate nothing. Not thread-safe: one population, one thread at a time.
-class Momvo {
+class alignas(64) Momvo {
  public:
   /// `universes` >= 1 of `dimension` variables.
   Momvo(std::size_t universes, int dimension, int objectives, const OptimizerSettings& settings);
 
   /// Starts over on `problem` (which must outlive the run) with a random population.
   void reset(const Problem& problem, RandomStream random);
-  /// Places a solution among the initial universes; `slot` is taken modulo their number.
+  /// Places a solution, moved into the box, among the initial universes; `slot` is taken modulo their number.
   void place(std::size_t slot, std::span<const double> x);
 
-  /// One iteration: clamp, evaluate, update the archive, rank, then move every universe through black and white holes
-  /// and wormholes. `fraction` in (0, 1] of the budget is used when it ends: it sets WEP and TDR.
+  /// One iteration: evaluate, update the archive, rank, then move every universe through black and white holes and
+  /// wormholes, back into the box where a move left it. `fraction` in (0, 1] of the budget is used when it ends: it
+  /// sets WEP and TDR.
   void iterate(double fraction);
 
   /// Draws the representative that this population sends to the master, by roulette from its own archive. Precondition:
@@ -45,8 +47,9 @@ class Momvo {
   std::span<double> universe(std::size_t i) {
     return {x_.data() + i * static_cast<std::size_t>(dimension_), static_cast<std::size_t>(dimension_)};
   }
-  void clamp();
   void move(double fraction);
+  void move_widely(std::size_t i, double inflation, double wep, double tdr, RandomStream& random);
+  void move_narrowly(std::size_t i, double tdr, RandomStream& random);
 
   std::size_t universes_;
   int dimension_;
@@ -60,6 +63,8 @@ class Momvo {
   std::vector<double> x_;
   std::vector<double> previous_;
   std::vector<Cost> costs_;
+  std::vector<Move> kinds_;  // how each universe has come to be where it is
+  MoveChoice moves_;
   std::size_t representative_ = 0;
 };
 

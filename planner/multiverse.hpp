@@ -2,7 +2,9 @@
 // The multiverse's schedule and moves, [Paper] Eq. (18)-(20), each for itself.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "planner/random.hpp"
 #include "planner/settings.hpp"
@@ -17,26 +19,81 @@ inline double wormhole_probability(double fraction, const OptimizerSettings& s) 
 /// Travelling distance rate: 1 at the start, 0 at the end. differs: Eq. (20) prints 1 − iter^(1/γ)/n_iter, which stays
 /// near 1 to the end; this is 1 − (iter/n_iter)^(1/γ).
 inline double travelling_distance(double fraction, const OptimizerSettings& s) {
+  if (s.operators == Operators::kPrinted) {
+    return 1.0 - std::pow(fraction * s.iterations, 1.0 / s.exploitation) / s.iterations;
+  }
   return 1.0 - std::pow(fraction, 1.0 / s.exploitation);
 }
 
-/// One component moved through a wormhole to the leader's value ± a step, Eq. (18). differs: the printed form adds TDR
-/// instead of multiplying, has the same condition on both branches, and a step that depends on where the origin is;
-/// this is leader ± tdr · (upper − lower) · r, + for half of the draws. The result may lie outside the box.
-inline double wormhole(double leader, double tdr, double lower, double upper, RandomStream& random) {
-  const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
-  return leader + side * tdr * (upper - lower) * random.uniform();
+/// One component moved through a wormhole to the leader's value ± a step, Eq. (18); the result may lie outside the box.
+/// - kCorrected, kAdaptive: leader ± tdr · (upper − lower) · r, + for half of the draws: drawn as one number in [-1,
+/// 1).
+/// - kPrinted: leader + tdr ± (upper − lower · r + lower). The paper gives both signs the same condition; each is taken
+///   for half of the draws.
+/// - kCommon: leader ± tdr · ((upper − lower) · r + lower), whose step depends on where the origin is.
+inline double wormhole(double leader, double tdr, double lower, double upper, Operators operators,
+                       RandomStream& random) {
+  const double signed_r = 2.0 * random.uniform() - 1.0;
+  if (operators == Operators::kCorrected || operators == Operators::kAdaptive) {
+    return leader + tdr * (upper - lower) * signed_r;
+  }
+  const double side = signed_r < 0.0 ? -1.0 : 1.0;
+  const double r = std::abs(signed_r);
+  if (operators == Operators::kPrinted) return leader + tdr + side * (upper - lower * r + lower);
+  return leader + side * tdr * ((upper - lower) * r + lower);
 }
 
-/// Position, in an order from best to worst, of the universe that a black hole takes from: the weight falls linearly
-/// with the position, from n to 1.
+/// A narrow wormhole, of this project: leader + 2 · tdr · (upper − lower) · r³, r even in [-1, 1): most steps are
+/// small, some go far.
+inline double narrow_wormhole(double leader, double tdr, double lower, double upper, RandomStream& random) {
+  const double r = 2.0 * random.uniform() - 1.0;
+  return leader + 2.0 * tdr * (upper - lower) * (r * r * r);
+}
+
+/// The kinds of move of Operators::kAdaptive.
+enum class Move : unsigned char {
+  kWide,   ///< the paper's: white holes and wormholes in every variable
+  kNarrow  ///< narrow wormholes in a few variables, the others as the leader has them
+};
+
+/// Draws kinds of move in proportion to how often their results enter the archive.
+class MoveChoice {
+ public:
+  void judge(Move move, bool success) {
+    tries_[index(move)] += 1.0;
+    successes_[index(move)] += success ? 1.0 : 0.0;
+  }
+  /// Ends a generation: the past counts less from here on.
+  void adapt() {
+    const double wide = (successes_[0] + 1.0) / (tries_[0] + 2.0);
+    const double narrow = (successes_[1] + 1.0) / (tries_[1] + 2.0);
+    const double share = narrow / (wide + narrow);
+    narrow_share_ = share < kLeast ? kLeast : (share > 1.0 - kLeast ? 1.0 - kLeast : share);
+    for (std::size_t k = 0; k < 2; ++k) {
+      tries_[k] *= kMemory;
+      successes_[k] *= kMemory;
+    }
+  }
+  Move draw(RandomStream& random) const { return random.uniform() < narrow_share_ ? Move::kNarrow : Move::kWide; }
+  [[nodiscard]] double narrow_share() const { return narrow_share_; }
+
+ private:
+  static constexpr double kLeast = 0.1;   // share that a kind keeps, so that its success can be seen
+  static constexpr double kMemory = 0.8;  // of a generation's counts in the next
+  static std::size_t index(Move move) { return move == Move::kNarrow ? 1 : 0; }
+
+  std::array<double, 2> tries_{};
+  std::array<double, 2> successes_{};
+  double narrow_share_ = 0.5;
+};
+
+/// Position, in an order of n <= 2^31 from best to worst, of the universe that a black hole takes from: the better of
+/// two drawn evenly, so that the weight falls linearly with the position, from 2n − 1 to 1.
 inline std::size_t white_hole(std::size_t n, RandomStream& random) {
-  const auto count = static_cast<double>(n);
-  const double total = 0.5 * count * (count + 1.0);
-  const double remaining =
-      total * (1.0 - random.uniform());  // weight from the drawn position to the end, in (0, total]
-  const auto from_end = static_cast<std::size_t>(std::ceil(0.5 * (std::sqrt(1.0 + 8.0 * remaining) - 1.0)));
-  return from_end >= n ? 0 : n - from_end;
+  const std::uint64_t bits = random.next();
+  const std::uint64_t first = ((bits >> 32U) * n) >> 32U;
+  const std::uint64_t second = ((bits & 0xffffffffU) * n) >> 32U;
+  return first < second ? first : second;
 }
 
 }  // namespace jink::planner

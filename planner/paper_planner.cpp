@@ -78,9 +78,8 @@ bool start_blocked(const PaperRequest& request) {
 }
 
 /// Plans the free waypoints into `plan.path`, which holds the start.
-void plan_steps(const PaperRequest& request, WorkerPool& pool, Plan& plan) {
+void plan_steps(const PaperRequest& request, Optimizer& optimizer, WorkerPool& pool, Plan& plan) {
   const Laterals directions = laterals(request, effective_axis(request));
-  Pmomvo optimizer(request.optimizer, 2, 2);
   WaypointProblem problem(request.settings, request.vehicle);
   std::vector<Track> now(request.tracks.size());
   const int segments = request.settings.waypoints - 1;
@@ -107,6 +106,7 @@ void plan_steps(const PaperRequest& request, WorkerPool& pool, Plan& plan) {
     problem.prepare(step, now);
     const Front& front = optimizer.run(problem, {}, request.seed, static_cast<std::uint64_t>(i), budget, pool);
     plan.evaluations += optimizer.report().evaluations;
+    plan.schedule = budget.generations;
     plan.generations = optimizer.report().generations;
     if (i == 1) {
       for (const Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
@@ -125,6 +125,11 @@ Axis effective_axis(const PaperRequest& request) {
 }
 
 Plan plan_paper(const PaperRequest& request, WorkerPool& pool) {
+  Pmomvo optimizer(request.optimizer, 2, 2);
+  return plan_paper(request, optimizer, pool);
+}
+
+Plan plan_paper(const PaperRequest& request, Optimizer& optimizer, WorkerPool& pool) {
   if (request.settings.waypoints < 2) {
     throw std::invalid_argument("waypoints: " + std::to_string(request.settings.waypoints) + " is not at least 2");
   }
@@ -134,7 +139,7 @@ Plan plan_paper(const PaperRequest& request, WorkerPool& pool) {
   if (start_blocked(request)) {
     plan.status = PlanStatus::kStartBlocked;
   } else {
-    plan_steps(request, pool, plan);
+    plan_steps(request, optimizer, pool, plan);
     append(plan.path, request.target, request.vehicle);
   }
   plan.verification = verify({plan.path, request.tracks, 0.0, request.vehicle.radius, request.volume});

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "planner/budget.hpp"
+#include "planner/optimizer.hpp"
 #include "planner/plan.hpp"
 #include "planner/settings.hpp"
 #include "planner/types.hpp"
@@ -34,5 +35,9 @@ Axis effective_axis(const PaperRequest& request);
 /// is kReaches only for a free one, else kBlocked. The same bits for any number of threads. Throws
 /// std::invalid_argument for settings that Pmomvo refuses or fewer than two waypoints.
 Plan plan_paper(const PaperRequest& request, WorkerPool& pool);
+
+/// The same with another optimizer, for problems of two variables and two objectives, in place of PMOMVO; of
+/// `request.optimizer` only the iterations are used.
+Plan plan_paper(const PaperRequest& request, Optimizer& optimizer, WorkerPool& pool);
 
 }  // namespace jink::planner

@@ -2,20 +2,17 @@
 #include "planner/pareto.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "planner/multiversion.hpp"
 
 namespace jink::planner {
-void make_rankable(Cost& cost) {
-  double sum = cost.violation;
-  for (const double f : cost.f) sum += f;
-  if (std::isfinite(sum)) return;
-  constexpr double kWorst = 1e300;
-  cost = {{kWorst, kWorst, kWorst}, kWorst};
-}
-
 bool dominates(const Cost& a, const Cost& b, int objectives) {
   if (a.violation != b.violation) return a.violation < b.violation;
   bool better = false;
@@ -27,89 +24,155 @@ bool dominates(const Cost& a, const Cost& b, int objectives) {
   return better;
 }
 
-Ranking::Ranking(std::size_t capacity)
-    : order_(capacity), front_(capacity), dominators_(capacity), sorted_(capacity), crowding_(capacity) {}
+namespace {
 
-void Ranking::peel_fronts(std::span<const Cost> costs, int objectives) {
-  const std::size_t n = costs.size();
-  std::fill_n(dominators_.begin(), n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      if (dominates(costs[i], costs[j], objectives)) {
-        ++dominators_[j];
-      } else if (dominates(costs[j], costs[i], objectives)) {
-        ++dominators_[i];
-      }
-    }
+// Few elements are the rule here: a slave has a handful of universes. The order is total, so that the algorithm has no
+// influence on the result.
+template <typename Element, typename Less>
+void sort_few(std::span<Element> elements, const Less& less) {
+  constexpr std::size_t kFew = 24;
+  if (elements.size() > kFew) {
+    std::sort(elements.begin(), elements.end(), less);
+    return;
   }
-  std::fill_n(front_.begin(), n, -1);
-  std::size_t placed = 0;
-  for (int level = 0; placed < n; ++level) {
-    const std::size_t before = placed;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (front_[i] < 0 && dominators_[i] == 0) {
-        front_[i] = level;
-        sorted_[placed++] = static_cast<int>(i);
+  for (std::size_t i = 1; i < elements.size(); ++i) {
+    const Element element = elements[i];
+    std::size_t hole = i;
+    for (; hole > 0 && less(element, elements[hole - 1]); --hole) elements[hole] = elements[hole - 1];
+    elements[hole] = element;
+  }
+}
+
+}  // namespace
+
+Ranking::Ranking(std::size_t capacity)
+    : sorted_(capacity), order_(capacity), front_(capacity), previous_(capacity), crowding_(capacity) {
+  last_.reserve(capacity);
+  ends_.reserve(capacity);
+}
+
+namespace {
+
+constexpr std::size_t kFew = 16;
+
+// Whether p comes before q in lexicographic order of (violation, objectives, index).
+bool before(const Cost& p, const Cost& q, int index_p, int index_q) {
+  if (p.violation != q.violation) return p.violation < q.violation;
+  for (std::size_t k = 0; k < kMaxObjectives; ++k) {
+    if (p.f[k] != q.f[k]) return p.f[k] < q.f[k];
+  }
+  return index_p < index_q;
+}
+
+// The place of each of at most kFew costs in that order is the number of those before it: for a handful, counting them
+// without a branch is quicker than any sorting, whose branches nobody can predict.
+JINK_MULTIVERSION void count_before(std::span<const Cost> costs, std::array<std::int64_t, kFew>& place) {
+  std::array<std::array<double, kFew>, 4> key{};
+  std::array<double, kFew> index{};
+  const std::size_t n = costs.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    key[0][j] = costs[j].violation;
+    for (std::size_t k = 0; k < kMaxObjectives; ++k) key[k + 1][j] = costs[j].f[k];
+    index[j] = static_cast<double>(j);
+  }
+  place.fill(0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < kFew; ++j) {
+      int less = static_cast<int>(index[i] < index[j]);
+      for (std::size_t k = key.size(); k > 0; --k) {
+        const double p = key[k - 1][i];
+        const double q = key[k - 1][j];
+        less = static_cast<int>(p < q) | (static_cast<int>(p == q) & less);
       }
-    }
-    assert(placed > before && "constrained domination is acyclic");
-    for (std::size_t k = before; k < placed; ++k) {
-      const auto i = static_cast<std::size_t>(sorted_[k]);
-      for (std::size_t j = 0; j < n; ++j) {
-        if (front_[j] < 0 && dominates(costs[i], costs[j], objectives)) --dominators_[j];
-      }
+      place[j] += less;
     }
   }
 }
 
-void Ranking::crowd(std::span<const Cost> costs, int objectives) {
-  const std::size_t n = costs.size();
-  std::fill_n(crowding_.begin(), n, 0.0);
-  for (int k = 0; k < objectives; ++k) {
-    const auto objective = static_cast<std::size_t>(k);
-    const auto value = [&](std::size_t position) {
-      return costs[static_cast<std::size_t>(sorted_[position])].f[objective];
+void sort_lexicographically(std::span<const Cost> costs, std::span<int> sorted) {
+  if (costs.size() <= kFew) {
+    std::array<std::int64_t, kFew> place;
+    count_before(costs, place);
+    for (std::size_t i = 0; i < costs.size(); ++i) sorted[static_cast<std::size_t>(place[i])] = static_cast<int>(i);
+    return;
+  }
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::sort(sorted.begin(), sorted.end(), [&](int a, int b) {
+    return before(costs[static_cast<std::size_t>(a)], costs[static_cast<std::size_t>(b)], a, b);
+  });
+}
+
+}  // namespace
+
+// In lexicographic order nobody is dominated by a later one, and with two objectives, of the members of a front, the
+// last one found dominates if any does.
+void Ranking::assign_fronts(std::span<const Cost> costs, int objectives) {
+  const auto cost = [&](int i) -> const Cost& { return costs[static_cast<std::size_t>(i)]; };
+  sort_lexicographically(costs, sorted_);
+  last_.clear();
+  for (const int i : sorted_) {
+    const auto dominated_in = [&](int member) {
+      for (; member >= 0; member = previous_[static_cast<std::size_t>(member)]) {
+        if (dominates(cost(member), cost(i), objectives)) return true;
+        if (objectives <= 2) break;
+      }
+      return false;
     };
-    std::iota(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n), 0);
-    std::sort(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n), [&](int a, int b) {
-      const auto i = static_cast<std::size_t>(a);
-      const auto j = static_cast<std::size_t>(b);
-      if (front_[i] != front_[j]) return front_[i] < front_[j];
-      if (costs[i].f[objective] != costs[j].f[objective]) return costs[i].f[objective] < costs[j].f[objective];
-      return a < b;
-    });
-    for (std::size_t low = 0; low < n;) {
-      std::size_t high = low;
-      while (high + 1 < n &&
-             front_[static_cast<std::size_t>(sorted_[high + 1])] == front_[static_cast<std::size_t>(sorted_[low])]) {
-        ++high;
-      }
-      const double extent = value(high) - value(low);
-      crowding_[static_cast<std::size_t>(sorted_[low])] = std::numeric_limits<double>::infinity();
-      crowding_[static_cast<std::size_t>(sorted_[high])] = std::numeric_limits<double>::infinity();
-      for (std::size_t i = low + 1; i < high && extent > 0.0; ++i) {
-        crowding_[static_cast<std::size_t>(sorted_[i])] += (value(i + 1) - value(i - 1)) / extent;
-      }
-      low = high + 1;
+    std::size_t level = 0;
+    while (level < last_.size() && dominated_in(last_[level])) ++level;
+    if (level == last_.size()) last_.push_back(-1);
+    front_[static_cast<std::size_t>(i)] = static_cast<int>(level);
+    previous_[static_cast<std::size_t>(i)] = last_[level];
+    last_[level] = i;
+  }
+}
+
+// Into order_, front after front, each in lexicographic order. ends_: where each front ends.
+void Ranking::gather_fronts() {
+  ends_.assign(last_.size(), 0);
+  for (const int level : front_) ++ends_[static_cast<std::size_t>(level)];
+  std::size_t begin = 0;
+  for (std::size_t& end : ends_) begin = std::exchange(end, begin) + begin;
+  for (const int i : sorted_) {
+    order_[ends_[static_cast<std::size_t>(front_[static_cast<std::size_t>(i)])]++] = i;
+  }
+}
+
+// Crowding distances of one front, then its members by them.
+void Ranking::crowd(std::span<const Cost> costs, std::span<int> front, int objectives) {
+  for (const int i : front) crowding_[static_cast<std::size_t>(i)] = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(objectives); ++k) {
+    const auto f = [&](int i) { return costs[static_cast<std::size_t>(i)].f[k]; };
+    if (k > 0 || objectives > 2) {  // two objectives: the lexicographic order is that of the first
+      sort_few(front, [&](int a, int b) { return f(a) != f(b) ? f(a) < f(b) : a < b; });
+    }
+    const double extent = f(front.back()) - f(front.front());
+    crowding_[static_cast<std::size_t>(front.front())] = std::numeric_limits<double>::infinity();
+    crowding_[static_cast<std::size_t>(front.back())] = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < front.size() && extent > 0.0; ++i) {
+      crowding_[static_cast<std::size_t>(front[i])] += (f(front[i + 1]) - f(front[i - 1])) / extent;
     }
   }
+  sort_few(front, [&](int a, int b) {
+    const double at_a = crowding_[static_cast<std::size_t>(a)];
+    const double at_b = crowding_[static_cast<std::size_t>(b)];
+    return at_a != at_b ? at_a > at_b : a < b;
+  });
 }
 
 std::span<const int> Ranking::order(std::span<const Cost> costs, int objectives) {
   const std::size_t n = costs.size();
-  assert(n <= order_.size());
-  size_ = n;
-  peel_fronts(costs, objectives);
-  crowd(costs, objectives);
-  std::iota(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(n), 0);
-  std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(n), [&](int a, int b) {
-    const auto i = static_cast<std::size_t>(a);
-    const auto j = static_cast<std::size_t>(b);
-    if (front_[i] != front_[j]) return front_[i] < front_[j];
-    if (crowding_[i] != crowding_[j]) return crowding_[i] > crowding_[j];
-    return a < b;
-  });
-  return {order_.data(), n};
+  assert(n <= order_.capacity());
+  for (std::vector<int>* list : {&sorted_, &order_, &front_, &previous_}) list->resize(n);
+  crowding_.resize(n);
+  assign_fronts(costs, objectives);
+  gather_fronts();
+  std::size_t begin = 0;
+  for (const std::size_t end : ends_) {
+    crowd(costs, std::span(order_).subspan(begin, end - begin), objectives);
+    begin = end;
+  }
+  return order_;
 }
 
 }  // namespace jink::planner

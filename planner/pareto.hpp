@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,33 +19,42 @@ struct Cost {
 };
 
 /// Replaces a cost with any NaN or infinity by the worst cost there is, so that it ranks last everywhere.
-void make_rankable(Cost& cost);
+inline void make_rankable(Cost& cost) {
+  const double sum = cost.violation + cost.f[0] + cost.f[1] + cost.f[2];
+  if (std::isfinite(sum)) return;
+  constexpr double kWorst = 1e300;
+  cost = {{kWorst, kWorst, kWorst}, kWorst};
+}
 
 /// True where a constrained-dominates b: a smaller violation wins, then Pareto. differs: [Paper] Eq. (17) uses static
 /// penalties instead, which leave `violation` at 0. Precondition: finite costs (make_rankable).
 bool dominates(const Cost& a, const Cost& b, int objectives);
 
 /// Orders solutions from best to worst by non-dominated front, then by crowding distance (wider first), then by index.
-/// Owns its workspace: no allocation once constructed for `capacity` solutions. O(n² · objectives).
+/// Owns its workspace: no allocation once constructed for `capacity` solutions. Efficient non-dominated sorting with
+/// sequential search (Zhang et al. 2015): O(n log n + n · fronts) for two objectives, at worst O(n²) for more.
 class Ranking {
  public:
   explicit Ranking(std::size_t capacity);
 
-  /// Indices of `costs`, best first; valid until the next call. Precondition: costs.size() <= capacity.
+  /// Indices of `costs`, best first, valid until the next call. Preconditions: finite costs, at most `capacity` of
+  /// them.
   std::span<const int> order(std::span<const Cost> costs, int objectives);
 
-  /// Front number of each solution of the last order(), 0 the non-dominated.
-  [[nodiscard]] std::span<const int> fronts() const { return {front_.data(), size_}; }
+  /// Front of each solution in the last order(), 0 the non-dominated one; by index of `costs`.
+  [[nodiscard]] std::span<const int> fronts() const { return {front_.data(), order_.size()}; }
 
  private:
-  void peel_fronts(std::span<const Cost> costs, int objectives);
-  void crowd(std::span<const Cost> costs, int objectives);
+  void assign_fronts(std::span<const Cost> costs, int objectives);
+  void gather_fronts();
+  void crowd(std::span<const Cost> costs, std::span<int> front, int objectives);
 
-  std::size_t size_ = 0;
+  std::vector<int> sorted_;  // lexicographically
   std::vector<int> order_;
   std::vector<int> front_;
-  std::vector<int> dominators_;
-  std::vector<int> sorted_;
+  std::vector<int> last_;      // of each front, the member found last
+  std::vector<int> previous_;  // of each member, the one before in its front
+  std::vector<std::size_t> ends_;
   std::vector<double> crowding_;
 };
 

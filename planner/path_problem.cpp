@@ -8,25 +8,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "planner/obstacle_motion.hpp"
+#include "planner/multiversion.hpp"
+#include "planner/path_lanes.hpp"
 
 namespace jink::planner {
 namespace {
 
-constexpr double kCatchUp = 0.4;        // s, in which a distance from the wished position is made good
-constexpr double kArrival = 0.05;       // m, where a path is at the target
-constexpr double kNear = 0.3;           // m, where time stops counting
-constexpr double kShortLeg = 0.1;       // m, legs below have no direction
 constexpr double kLongestTail = 600.0;  // s, of straight flight after the horizon
-constexpr std::size_t kChunk = 32;      // obstacles tested at a time
 
 std::size_t index(int i) {
   return static_cast<std::size_t>(i);
-}
-
-Vec3 limited(const Vec3& v, double limit) {
-  const double norm = v.norm();
-  return norm > limit ? Vec3(v * (limit / norm)) : v;
 }
 
 const HorizonSettings& checked(const HorizonSettings& settings) {
@@ -35,32 +26,41 @@ const HorizonSettings& checked(const HorizonSettings& settings) {
   return settings;
 }
 
-/// How far a point lies outside a volume.
-double distance_outside(const Box& volume, const Vec3& p) {
-  return (p - p.cwiseMax(volume.min).cwiseMin(volume.max)).norm();
+Box ball(const Vec3& center, double radius) {
+  return {(center.array() - radius).matrix(), (center.array() + radius).matrix()};
 }
 
 }  // namespace
 
 PathProblem::PathProblem(const HorizonSettings& settings)
-    : settings_(checked(settings)),
-      steps_per_leg_(std::max(1, static_cast<int>(std::lround(settings.time / settings.waypoints / settings.step)))),
-      steps_(steps_per_leg_ * settings.waypoints),
-      lower_(index(3 * settings.waypoints), -1.0),
-      upper_(lower_.size(), 1.0),
-      speed_(index(steps_ + 1)),
-      undisturbed_(index(steps_ + 1)),
-      ahead_(index(settings.waypoints)),
-      behind_(ahead_.size()),
-      aside_(ahead_.size()) {
-  if (steps_ > kMaxSteps)
-    throw std::invalid_argument("horizon: " + std::to_string(steps_) + " steps of time / step; at most " +
+    : settings_(checked(settings)), lower_(index(3 * settings.waypoints), -1.0), upper_(lower_.size(), 1.0) {
+  scene_.waypoints = settings.waypoints;
+  scene_.steps_per_leg = std::max(1, static_cast<int>(std::lround(settings.time / settings.waypoints / settings.step)));
+  scene_.steps = scene_.steps_per_leg * settings.waypoints;
+  if (scene_.steps > kMaxSteps)
+    throw std::invalid_argument("horizon: " + std::to_string(scene_.steps) + " steps of time / step; at most " +
                                 std::to_string(kMaxSteps));
+  scene_.step = settings.step;
+  scene_.time_weight = settings.time_weight;
+  scene_.deviation_weight = settings.deviation_weight;
+  scene_.reach.resize(index(settings.waypoints));
+  scene_.undisturbed.resize(index(scene_.steps + 1));
+  scene_.speed.resize(index(scene_.steps + 1));
+  undisturbed_.resize(index(scene_.steps + 1));
+  where_.resize(index(scene_.steps));
 }
 
 void PathProblem::prepare(const PathRequest& request) {
   request_ = request;
-  frame_ = PathFrame(request.position, request.target);
+  const double acceleration = settings_.acceleration_share * request.vehicle.max_acceleration;
+  scene_.position = request.position;
+  scene_.velocity = request.velocity;
+  scene_.target = request.target;
+  scene_.volume = request.volume;
+  scene_.frame = PathFrame(request.position, request.target);
+  scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,
+                     1.0 / (acceleration * settings_.step)};
+  scene_.inverse_braking = 1.0 / (2.0 * acceleration);
   undisturbed_flight();
   predict_obstacles();
 }
@@ -68,227 +68,151 @@ void PathProblem::prepare(const PathRequest& request) {
 // Along the straight line: up to cruise speed, and braking for the target.
 void PathProblem::undisturbed_flight() {
   const VehicleLimits& vehicle = request_.vehicle;
-  const double climb_share = std::abs(frame_.axis.z());
-  cruise_ = climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
+  const PathFrame& frame = scene_.frame;
+  const double climb_share = std::abs(frame.axis.z());
+  const double cruise =
+      climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
   const double change = settings_.acceleration_share * vehicle.max_acceleration * settings_.step;
   double distance = 0.0;
-  double speed = std::clamp(request_.velocity.dot(frame_.axis), 0.0, vehicle.max_speed);
-  undisturbed_time_ = 0.0;
-  for (int step = 1; step <= steps_; ++step) {
-    const double left = frame_.length - distance;
-    const double wish = std::min({cruise_, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
+  double speed = std::clamp(request_.velocity.dot(frame.axis), 0.0, vehicle.max_speed);
+  double time = 0.0;
+  scene_.undisturbed[0] = frame.origin;
+  for (int step = 1; step <= scene_.steps; ++step) {
+    const double left = frame.length - distance;
+    const double wish = std::min({cruise, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
     const double next = std::clamp(wish, speed - change, speed + change);
-    distance = std::min(frame_.length, distance + 0.5 * (speed + next) * settings_.step);
+    distance = std::min(frame.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
-    if (frame_.length - distance > kNear) undisturbed_time_ = step * settings_.step;
+    if (frame.length - distance > kNear) time = step * settings_.step;
     undisturbed_[index(step)] = distance;
-    speed_[index(step)] = speed;
+    scene_.undisturbed[index(step)] = frame.origin + distance * frame.axis;
+    scene_.speed[index(step)] = speed;
   }
-  undisturbed_time_ += (frame_.length - distance) / cruise_;
+  scene_.cruise = cruise;
+  scene_.undisturbed_time = time + (frame.length - distance) / cruise;
   for (int k = 0; k < settings_.waypoints; ++k) {
-    const int step = (k + 1) * steps_per_leg_;
+    const int step = (k + 1) * scene_.steps_per_leg;
     const double t = step * settings_.step;
     const double along = undisturbed_[index(step)];
-    ahead_[index(k)] = std::max(kArrival, std::min(frame_.length, vehicle.max_speed * t) - along);
-    behind_[index(k)] = along + std::min(settings_.back_range, vehicle.max_speed * t);
-    aside_[index(k)] = std::min(settings_.lateral_range, vehicle.max_speed * t);
+    scene_.reach[index(k)] = {std::max(kArrival, std::min(frame.length, vehicle.max_speed * t) - along),
+                              along + std::min(settings_.back_range, vehicle.max_speed * t),
+                              std::min(settings_.lateral_range, vehicle.max_speed * t)};
   }
 }
 
+Clearance PathProblem::clearance() const {
+  return {request_.vehicle.radius + request_.margin, settings_.sigma_factor, request_.track_acceleration,
+          settings_.clearance_limit, request_.acceleration_trust};
+}
+
+// Where any motion can be. Each step moves the velocity along a straight line towards one that keeps the limits, by at
+// most the change that a step allows. So neither speed nor climb exceeds its limit or, where that is above, its value
+// at the start; and after time t the position is within acceleration · t² / 2 of straight flight from the start.
 void PathProblem::predict_obstacles() {
-  const auto reach = [&](double t) {
-    return request_.vehicle.max_speed * t + request_.velocity.norm() * settings_.step;
-  };
-  // Clearance asked for on top of the hard margin after t seconds.
-  const auto uncertainty = [&](const Track& track, double t) {
-    const double ahead = t + track.age;
-    const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
-    return std::min(settings_.clearance_limit,
-                    settings_.sigma_factor * sigma + 0.5 * request_.track_acceleration * ahead * ahead);
-  };
-  const auto hard = [&](const Track& track) { return track.radius + request_.vehicle.radius + request_.margin; };
-  std::vector<const Track*> kept;
-  for (const Track& track : request_.tracks) {
-    for (int n = 0; n <= steps_; ++n) {
-      const double t = n * settings_.step;
-      const double distance = (predict_position(track, t, request_.acceleration_trust) - request_.position).norm();
-      const double moved = track.velocity.norm() * settings_.step;  // between this instant and the next
-      if (distance > reach(t) + hard(track) + uncertainty(track, t) + moved) continue;
-      kept.push_back(&track);
-      break;
-    }
-  }
-  kept_ = kept.size();
-  const std::size_t cells = kept_ * index(steps_ + 1);
-  for (std::vector<double>* row : {&x_, &y_, &z_, &hard_, &soft_}) row->resize(cells);
-  for (int n = 0; n <= steps_; ++n) {
-    const double t = n * settings_.step;
-    for (std::size_t j = 0; j < kept_; ++j) {
-      const std::size_t cell = index(n) * kept_ + j;
-      const Vec3 p = predict_position(*kept[j], t, request_.acceleration_trust);
-      x_[cell] = p.x();
-      y_[cell] = p.y();
-      z_[cell] = p.z();
-      hard_[cell] = hard(*kept[j]);
-      soft_[cell] = hard_[cell] + uncertainty(*kept[j], t);
-    }
-  }
-}
-
-// ENU offset from undisturbed flight at waypoint k (0: the present), moved into the volume where it leads out of it.
-Vec3 PathProblem::offset(std::span<const double> x, int k) const {
-  if (k == 0) return Vec3::Zero();
-  const std::size_t i = index(k - 1);
-  const double along = x[3 * i] * (x[3 * i] > 0.0 ? ahead_[i] : behind_[i]);
-  const Vec3 base = undisturbed(k * steps_per_leg_);
-  const Vec3 wish =
-      base + along * frame_.axis + x[3 * i + 1] * aside_[i] * frame_.left + x[3 * i + 2] * aside_[i] * frame_.up;
-  return wish.cwiseMax(request_.volume.min).cwiseMin(request_.volume.max) - base;
-}
-
-void PathProblem::advance(Flight& flight, const Vec3& wish) const {
   const VehicleLimits& vehicle = request_.vehicle;
-  Vec3 bounded = limited(wish, vehicle.max_speed);
-  if (std::abs(bounded.z()) > vehicle.max_climb) bounded *= vehicle.max_climb / std::abs(bounded.z());
-  const Vec3 change =
-      limited(bounded - flight.velocity, settings_.acceleration_share * vehicle.max_acceleration * settings_.step);
-  flight.position += (flight.velocity + 0.5 * change) * settings_.step;
-  flight.velocity += change;
-}
-
-template <typename Visit>
-void PathProblem::fly(std::span<const double> x, const Visit& visit) const {
-  Flight flight{request_.position, request_.velocity};
-  Vec3 begin = offset(x, 0);
-  for (int leg = 0; leg < settings_.waypoints; ++leg) {
-    const Vec3 end = offset(x, leg + 1);
-    const Vec3 drift = (end - begin) / (steps_per_leg_ * settings_.step);
-    for (int i = 0; i < steps_per_leg_; ++i) {
-      const int step = leg * steps_per_leg_ + i;
-      const Vec3 wished = undisturbed(step) + begin + i * settings_.step * drift;
-      advance(flight, speed_[index(step + 1)] * frame_.axis + drift + (wished - flight.position) / kCatchUp);
-      visit(step + 1, flight);
-    }
-    begin = end;
+  const double speed = std::max(vehicle.max_speed, request_.velocity.norm());
+  const double climb = std::max(vehicle.max_climb, std::abs(request_.velocity.z()));
+  const double acceleration = settings_.acceleration_share * vehicle.max_acceleration;
+  Box before = ball(request_.position, 0.0);
+  for (int step = 0; step < scene_.steps; ++step) {
+    const double t = (step + 1) * settings_.step;
+    const Box fastest = ball(request_.position, speed * t);
+    const Box turning = ball(request_.position + t * request_.velocity, 0.5 * acceleration * t * t);
+    Box now{fastest.min.cwiseMax(turning.min), fastest.max.cwiseMin(turning.max)};
+    now.min.z() = std::max(now.min.z(), request_.position.z() - climb * t);
+    now.max.z() = std::min(now.max.z(), request_.position.z() + climb * t);
+    where_[index(step)] = {before.min.cwiseMin(now.min), before.max.cwiseMax(now.max)};
+    before = now;
   }
+  obstacles_.build(request_.tracks, clearance(), settings_.step, where_);
 }
 
+// The lanes that are left over repeat the last solution.
+template <std::size_t kLanes>
+[[gnu::always_inline]] inline void PathProblem::evaluate_lanes(const double* x, std::span<Cost> costs) const {
+  std::array<const double*, kLanes> variables;
+  std::array<Cost*, kLanes> results;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const std::size_t solution = std::min(i, costs.size() - 1);
+    variables[i] = x + solution * lower_.size();
+    results[i] = i < costs.size() ? &costs[i] : nullptr;
+  }
+  FlightLanes<kLanes> flight(scene_, variables);
+  MeterLanes<kLanes> meter(scene_, obstacles_, flight.position);
+  int n = 0;
+  for (int leg = 0; leg < scene_.waypoints; ++leg) {
+    flight.begin_leg(leg);
+    for (int i = 0; i < scene_.steps_per_leg; ++i, ++n) {
+      flight.fly(n, i);
+      meter.add(n, flight.position);
+    }
+    meter.turn(flight.position);
+  }
+  meter.finish(results);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_twelve(const double* x, std::span<Cost> costs) const {
+  evaluate_lanes<12>(x, costs);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_eight(const double* x, std::span<Cost> costs) const {
+  evaluate_lanes<8>(x, costs);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_four(const double* x, std::span<Cost> costs) const {
+  evaluate_lanes<4>(x, costs);
+}
+
+// Three registers at a time keep the processor busy while each step waits for the one before.
 void PathProblem::evaluate(std::span<const double> x, std::span<Cost> costs) const {
-  std::array<Vec3, kMaxSteps + 1> positions;
-  const auto d = index(dimension());
-  for (std::size_t i = 0; i < costs.size(); ++i) {
-    positions[0] = request_.position;
-    fly(x.subspan(i * d, d), [&](int step, const Flight& flight) { positions[index(step)] = flight.position; });
-    costs[i] = cost_of_positions({positions.data(), index(steps_ + 1)});
-  }
-}
-
-// The way from the end of the horizon to the target: first to a stop, as far as braking takes, then straight on (or
-// back, where the target was overrun). Without the first part a path that comes fast would be the shorter one.
-double PathProblem::straight_rest(const Vec3& before, const Vec3& end) const {
-  const Vec3 last = end - before;
-  const double speed = last.norm() / settings_.step;
-  const double stopping = speed * speed / (2.0 * settings_.acceleration_share * request_.vehicle.max_acceleration);
-  const Vec3 stop = speed > 0.0 ? Vec3(end + last * (stopping / last.norm())) : end;
-  return stopping + (request_.target - stop).norm();
-}
-
-Cost PathProblem::cost_of_positions(std::span<const Vec3> positions) const {
-  Cost cost;
-  double length = 0.0;
-  double arrival = 0.0;
-  double deviation = 0.0;
-  for (int step = 0; step < steps_; ++step) {
-    const Vec3& from = positions[index(step)];
-    const Vec3& to = positions[index(step + 1)];
-    length += (to - from).norm();
-    if ((to - request_.target).squaredNorm() > kNear * kNear) arrival = (step + 1) * settings_.step;
-    deviation += (to - undisturbed(step + 1)).norm();
-    cost.violation += distance_outside(request_.volume, to) * settings_.step;
-    add_obstacles(step, from, to, cost);
-  }
-  const double rest = straight_rest(positions[index(steps_ - 1)], positions.back());
-  if (arrival == horizon()) arrival += rest / cruise_;
-  const double lost = std::max(0.0, arrival - undisturbed_time_);
-  cost.f[0] = length + rest + settings_.time_weight * cruise_ * lost + settings_.deviation_weight * deviation / steps_;
-
-  Vec3 direction = request_.velocity;
-  const Vec3* corner = &positions[0];
-  for (int k = 1; k <= settings_.waypoints + 1; ++k) {
-    const Vec3& next = k <= settings_.waypoints ? positions[index(k * steps_per_leg_)] : request_.target;
-    const Vec3 leg = next - *corner;
-    if (leg.norm() < kShortLeg) continue;
-    cost.f[1] += angle_between(direction, leg);
-    direction = leg;
-    corner = &next;
-  }
-  return cost;
-}
-
-void PathProblem::add_obstacles(int step, const Vec3& from, const Vec3& to, Cost& cost) const {
-  const double weight = settings_.step / (0.5 + step * settings_.step);  // what is near in time counts more
-  const std::size_t now = index(step) * kept_;
-  const std::size_t next = now + kept_;
-  std::array<double, kChunk> squared{};
-  for (std::size_t begin = 0; begin < kept_; begin += kChunk) {
-    const std::size_t count = std::min(kChunk, kept_ - begin);
-    // The swept test of geometry.hpp, laid out so that the compiler does several obstacles at once.
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t a = now + begin + i;
-      const std::size_t b = next + begin + i;
-      const double px = from.x() - x_[a];
-      const double py = from.y() - y_[a];
-      const double pz = from.z() - z_[a];
-      const double dx = to.x() - x_[b] - px;
-      const double dy = to.y() - y_[b] - py;
-      const double dz = to.z() - z_[b] - pz;
-      const double lengths = dx * dx + dy * dy + dz * dz + 1e-300;
-      const double s = std::min(1.0, std::max(0.0, -(dx * px + dy * py + dz * pz) / lengths));
-      const double qx = px + s * dx;
-      const double qy = py + s * dy;
-      const double qz = pz + s * dz;
-      squared[i] = qx * qx + qy * qy + qz * qz;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const double soft = soft_[next + begin + i];
-      if (squared[i] >= soft * soft) continue;
-      const double hard = hard_[next + begin + i];
-      const double distance = std::sqrt(squared[i]);
-      if (soft > hard) {
-        const double depth = std::min(1.0, (soft - distance) / (soft - hard));
-        cost.f[2] += weight * depth * depth;
-      }
-      if (distance < hard) cost.violation += weight * (hard - distance);
+  assert(x.size() == costs.size() * lower_.size());
+  constexpr std::size_t kMost = 12;
+  for (std::size_t i = 0; i < costs.size(); i += kMost) {
+    const std::span<Cost> block = costs.subspan(i, std::min(kMost, costs.size() - i));
+    const double* first = x.data() + i * lower_.size();
+    if (block.size() > 8) {
+      evaluate_twelve(first, block);
+    } else if (block.size() > 4) {
+      evaluate_eight(first, block);
+    } else {
+      evaluate_four(first, block);
     }
   }
 }
 
 TimedPath PathProblem::motion(std::span<const double> x) const {
   TimedPath path;
-  path.reserve(index(steps_ + 2));
+  path.reserve(index(scene_.steps + 2));
   path.push_back({0.0, request_.position, request_.velocity, Vec3::Zero()});
-  Flight last{request_.position, request_.velocity};
-  fly(x, [&](int step, const Flight& flight) {
-    path.back().acceleration = (flight.velocity - last.velocity) / settings_.step;
-    path.push_back({step * settings_.step, flight.position, flight.velocity, Vec3::Zero()});
-    last = flight;
-  });
-  fly_to_target(path, last);
+  FlightLanes<1> flight(scene_, {x.data()});
+  int n = 0;
+  for (int leg = 0; leg < scene_.waypoints; ++leg) {
+    flight.begin_leg(leg);
+    for (int i = 0; i < scene_.steps_per_leg; ++i, ++n) {
+      flight.fly(n, i);
+      const Vec3 velocity = flight.velocity.lane(0);
+      path.back().acceleration = (velocity - path.back().velocity) / settings_.step;
+      path.push_back({(n + 1) * settings_.step, flight.position.lane(0), velocity, Vec3::Zero()});
+    }
+  }
+  fly_to_target(path, path.back());
   return path;
 }
 
 // Straight on to the target and to rest there; a path that has settled at the target already ends where it arrived.
-void PathProblem::fly_to_target(TimedPath& path, Flight flight) const {
+void PathProblem::fly_to_target(TimedPath& path, TimedPoint flight) const {
   const auto away = [&](const TimedPoint& point) { return (point.position - request_.target).norm() > kArrival; };
   for (double tail = 0.0; away(path.back()) && tail < kLongestTail; tail += settings_.step) {
     const Vec3 way = request_.target - flight.position;
     const double distance = way.norm();
     const double speed =
         std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
-    const Vec3 before = flight.velocity;
-    advance(flight, way * (speed / distance));
-    path.back().acceleration = (flight.velocity - before) / settings_.step;
-    path.push_back({path.back().t + settings_.step, flight.position, flight.velocity, Vec3::Zero()});
+    const Vec3 wish = way * (speed / distance);
+    Vec3& p = flight.position;
+    Vec3& v = flight.velocity;
+    scene_.follower.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wish.x(), wish.y(), wish.z());
+    path.back().acceleration = (v - path.back().velocity) / settings_.step;
+    path.push_back({path.back().t + settings_.step, p, v, Vec3::Zero()});
   }
   if (away(path.back())) return;
   while (path.size() > 2 && !away(path[path.size() - 2])) path.pop_back();
@@ -298,20 +222,36 @@ void PathProblem::fly_to_target(TimedPath& path, Flight flight) const {
 }
 
 Cost PathProblem::cost_of(const TimedPath& path) const {
-  std::array<Vec3, kMaxSteps + 1> positions;
-  for (int n = 0; n <= steps_; ++n) positions[index(n)] = sample(path, n * settings_.step).position;
-  return cost_of_positions({positions.data(), index(steps_ + 1)});
+  std::vector<Vec3> positions(index(scene_.steps + 1));
+  for (int n = 0; n <= scene_.steps; ++n) positions[index(n)] = sample(path, n * settings_.step).position;
+  std::vector<Box> where(index(scene_.steps));
+  for (std::size_t n = 0; n < where.size(); ++n) {
+    where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
+  }
+  MetObstacles obstacles;
+  obstacles.build(request_.tracks, clearance(), settings_.step, where);
+  PointLanes<1> position;
+  position.set(positions[0]);
+  MeterLanes<1> meter(scene_, obstacles, position);
+  for (int n = 0; n < scene_.steps; ++n) {
+    position.set(positions[index(n + 1)]);
+    meter.add(n, position);
+    if ((n + 1) % scene_.steps_per_leg == 0) meter.turn(position);
+  }
+  Cost cost;
+  meter.finish({&cost});
+  return cost;
 }
 
 void PathProblem::imitate(const TimedPath& path, std::span<double> x) const {
   for (int k = 0; k < settings_.waypoints; ++k) {
     const std::size_t i = index(k);
-    const int step = (k + 1) * steps_per_leg_;
-    const Vec3 q = frame_.from_enu(sample(path, step * settings_.step).position);
+    const int step = (k + 1) * scene_.steps_per_leg;
+    const Vec3 q = scene_.frame.from_enu(sample(path, step * settings_.step).position);
     const double along = q.x() - undisturbed_[index(step)];
-    x[3 * i] = std::clamp(along / (along > 0.0 ? ahead_[i] : behind_[i]), -1.0, 1.0);
-    x[3 * i + 1] = std::clamp(q.y() / aside_[i], -1.0, 1.0);
-    x[3 * i + 2] = std::clamp(q.z() / aside_[i], -1.0, 1.0);
+    x[3 * i] = std::clamp(along / (along > 0.0 ? scene_.reach[i].ahead : scene_.reach[i].behind), -1.0, 1.0);
+    x[3 * i + 1] = std::clamp(q.y() / scene_.reach[i].aside, -1.0, 1.0);
+    x[3 * i + 2] = std::clamp(q.z() / scene_.reach[i].aside, -1.0, 1.0);
   }
 }
 
@@ -320,8 +260,8 @@ void PathProblem::manoeuvre(double share, double left, double up, std::span<doub
     const std::size_t i = index(k);
     const double kept = 3 * k < 2 * settings_.waypoints ? 1.0 : 0.0;
     x[3 * i] = kept * share;
-    x[3 * i + 1] = kept * std::clamp(left / aside_[i], -1.0, 1.0);
-    x[3 * i + 2] = kept * std::clamp(up / aside_[i], -1.0, 1.0);
+    x[3 * i + 1] = kept * std::clamp(left / scene_.reach[i].aside, -1.0, 1.0);
+    x[3 * i + 2] = kept * std::clamp(up / scene_.reach[i].aside, -1.0, 1.0);
   }
 }
 

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "planner/geometry.hpp"
+#include "planner/met_obstacles.hpp"
+#include "planner/path_scene.hpp"
 #include "planner/problem.hpp"
 #include "planner/settings.hpp"
 #include "planner/trajectory.hpp"
@@ -42,19 +43,23 @@ class PathProblem final : public Problem {
   /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.
   explicit PathProblem(const HorizonSettings& settings);
 
-  /// Prepares a plan: the frame, undisturbed flight, and at every step of the horizon the obstacles that can be met.
-  /// O(tracks · steps).
+  /// Prepares a plan: the frame, undisturbed flight, and for every step of the horizon the obstacles that can be met in
+  /// it. The request's tracks must stay as they are until the next call: cost_of() reads them again.
+  /// O(tracks + near tracks · steps); no allocation once it has seen as many obstacles.
   void prepare(const PathRequest& request);
 
   [[nodiscard]] int dimension() const override { return 3 * settings_.waypoints; }
   [[nodiscard]] int objectives() const override { return 3; }
   [[nodiscard]] std::span<const double> lower() const override { return lower_; }
   [[nodiscard]] std::span<const double> upper() const override { return upper_; }
+  /// Several solutions are evaluated in lockstep; each gets the same bits as alone.
   void evaluate(std::span<const double> x, std::span<Cost> costs) const override;
 
-  /// The motion of one solution, on to the target and at rest there: one point for each step.
+  /// The motion of one solution, on to the target and at rest there: one point for each step. What evaluate() measures
+  /// is this motion's first part, to the bit.
   [[nodiscard]] TimedPath motion(std::span<const double> x) const;
-  /// Objectives and violation of any path that starts at time 0, measured like those of a solution.
+  /// Objectives and violation of any path that starts at time 0, measured like those of a solution. It may be where no
+  /// solution can be. O(tracks + near tracks · steps), allocates.
   [[nodiscard]] Cost cost_of(const TimedPath& path) const;
 
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
@@ -63,46 +68,31 @@ class PathProblem final : public Problem {
   /// line, kept for two thirds of the horizon.
   void manoeuvre(double share, double left, double up, std::span<double> x) const;
 
-  [[nodiscard]] int steps() const { return steps_; }
-  [[nodiscard]] double horizon() const { return steps_ * settings_.step; }
+  [[nodiscard]] int steps() const { return scene_.steps; }
+  [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
   /// How many obstacles can be met within the horizon.
-  [[nodiscard]] std::size_t obstacles() const { return kept_; }
+  [[nodiscard]] std::size_t obstacles() const { return obstacles_.tracks(); }
 
  private:
   static constexpr int kMaxSteps = 256;
 
-  struct Flight {
-    Vec3 position, velocity;
-  };
-  [[nodiscard]] Vec3 undisturbed(int step) const {
-    return frame_.origin + undisturbed_[static_cast<std::size_t>(step)] * frame_.axis;
-  }
-  [[nodiscard]] Vec3 offset(std::span<const double> x, int k) const;
-  /// Calls visit(step, flight) with the motion's state at the end of each step of the horizon.
-  template <typename Visit>
-  void fly(std::span<const double> x, const Visit& visit) const;
-  void advance(Flight& flight, const Vec3& wish) const;
   void undisturbed_flight();
   void predict_obstacles();
-  void fly_to_target(TimedPath& path, Flight flight) const;
-  [[nodiscard]] double straight_rest(const Vec3& before, const Vec3& end) const;
-  [[nodiscard]] Cost cost_of_positions(std::span<const Vec3> positions) const;
-  void add_obstacles(int step, const Vec3& from, const Vec3& to, Cost& cost) const;
+  [[nodiscard]] Clearance clearance() const;
+  void fly_to_target(TimedPath& path, TimedPoint flight) const;
+  template <std::size_t kLanes>
+  void evaluate_lanes(const double* x, std::span<Cost> costs) const;
+  void evaluate_twelve(const double* x, std::span<Cost> costs) const;
+  void evaluate_eight(const double* x, std::span<Cost> costs) const;
+  void evaluate_four(const double* x, std::span<Cost> costs) const;
 
   HorizonSettings settings_;
   PathRequest request_;
-  PathFrame frame_;
-  int steps_per_leg_;
-  int steps_;
+  PathScene scene_;
+  MetObstacles obstacles_;
   std::vector<double> lower_, upper_;
-  std::vector<double> speed_;                   // along the axis after each step
-  double cruise_ = 0.0;                         // along the axis, the climb limit considered
-  std::vector<double> undisturbed_;             // distance along the axis after each step
-  std::vector<double> ahead_, behind_, aside_;  // how far a variable of ±1 reaches at each waypoint, m
-  double undisturbed_time_ = 0.0;               // to the target
-  std::size_t kept_ = 0;
-  // A row of kept_ values for each instant: positions, and the distances of hard and of wished clearance.
-  std::vector<double> x_, y_, z_, hard_, soft_;
+  std::vector<double> undisturbed_;  // distance along the axis after each step
+  std::vector<Box> where_;           // the vehicle can be during each step
 };
 
 }  // namespace jink::planner

@@ -26,7 +26,8 @@ struct Plan {
   TimedPath path;
   Verification verification;
   std::int64_t evaluations = 0;
-  int generations = 0;  ///< repeats the plan together with the seed
+  int schedule = 0;     ///< generations that were scheduled; with `generations` and the seed they repeat the plan
+  int generations = 0;  ///< generations that were done
   bool deadline_reached = false;
   bool kept_previous = false;                ///< the plan before was kept
   std::vector<std::array<double, 2>> front;  ///< the first two objectives of the (first) front

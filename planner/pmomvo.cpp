@@ -44,27 +44,26 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
   if (budget.generations < 1)
     throw std::invalid_argument("generations: " + std::to_string(budget.generations) + " is not at least 1");
   const auto slaves = static_cast<std::uint32_t>(slaves_.size());
-  pool.run(slaves, [&](std::uint32_t j) { slaves_[j].reset(problem, RandomStream(seed, stream, j)); });
-  place_initial(initial);
   report_ = {};
-  const int cycles = settings_.sharing + 1;
+  // The iteration counter runs on over the cycles. Where a deadline is to be kept, the master looks at the clock after
+  // every generation.
+  const auto cycle_end = [&](int cycle) {
+    return static_cast<int>(static_cast<std::int64_t>(budget.generations) * (cycle + 1) / (settings_.sharing + 1));
+  };
   int done = 0;
-  for (int cycle = 0; cycle < cycles; ++cycle) {
-    // The iteration counter runs on over the cycles.
-    const int stop = static_cast<int>(static_cast<std::int64_t>(budget.generations) * (cycle + 1) / cycles);
-    if (stop == done) continue;
-    if (done > 0) share();  // cycles without an iteration have nothing to share
+  int cycle = 0;
+  while (done < std::min(budget.generations, budget.stop_after) && !report_.deadline_reached) {
+    while (cycle_end(cycle) <= done) ++cycle;
+    const int stop = budget.has_deadline() ? done + 1 : std::min(cycle_end(cycle), budget.stop_after);
     pool.run(slaves, [&](std::uint32_t j) {
+      if (done == 0) begin(j, problem, initial, RandomStream(seed, stream, j));
       for (int iteration = done; iteration < stop; ++iteration) {
         slaves_[j].iterate(static_cast<double>(iteration + 1) / budget.generations);
       }
     });
     done = stop;
-    if (done >= budget.stop_after) break;
-    if (done < budget.generations && budget.expired()) {
-      report_.deadline_reached = true;
-      break;
-    }
+    if (done < budget.generations && done == cycle_end(cycle)) share();
+    report_.deadline_reached = done < budget.generations && budget.expired();
   }
   report_.generations = done;
   report_.evaluations = static_cast<std::int64_t>(done) * settings_.population;
@@ -72,13 +71,16 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
   return front_;
 }
 
-void Pmomvo::place_initial(std::span<const double> initial) {
+// A slave starts over, with every m-th of the initial solutions from its own number on.
+void Pmomvo::begin(std::uint32_t j, const Problem& problem, std::span<const double> initial,
+                   const RandomStream& random) {
+  Momvo& slave = slaves_[j];
+  slave.reset(problem, random);
   const auto d = static_cast<std::size_t>(dimension_);
   const std::size_t count = initial.size() / d;
-  for (std::size_t i = 0; i < count; ++i) {
-    Momvo& slave = slaves_[i % slaves_.size()];
-    const std::size_t slot = i / slaves_.size();
-    if (slot < slave.universes()) slave.place(slot, initial.subspan(i * d, d));
+  std::size_t slot = 0;
+  for (std::size_t i = j; i < count && slot < slave.universes(); i += slaves_.size()) {
+    slave.place(slot++, initial.subspan(i * d, d));
   }
 }
 

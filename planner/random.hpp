@@ -71,6 +71,12 @@ class RandomStream {
   /// Uniform in [0, 1): one of the 2^53 multiples of 2^-53, equally likely.
   constexpr double uniform() noexcept { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
 
+  /// Two independent numbers from one draw, uniform in [0, 1): multiples of 2^-32, equally likely.
+  constexpr std::array<double, 2> uniform_pair() noexcept {
+    const std::uint64_t bits = next();
+    return {static_cast<double>(bits >> 32U) * 0x1.0p-32, static_cast<double>(bits & 0xffffffffU) * 0x1.0p-32};
+  }
+
   /// Uniform in [lo, hi]; `hi` itself only where rounding reaches it, and always when lo == hi. Requires lo <= hi, both
   /// finite, and a finite hi - lo.
   constexpr double uniform(double lo, double hi) noexcept {

@@ -19,6 +19,14 @@ enum class Axis {
   kPath     ///< from start to target
 };
 
+/// How universes move, [Paper] Eq. (18) and (20).
+enum class Operators {
+  kPrinted,    ///< as the paper prints them
+  kCommon,     ///< the step of the circulating MOMVO code, which depends on where the origin is; Eq. (20) mended
+  kCorrected,  ///< mended, see planner/multiverse.hpp
+  kAdaptive    ///< corrected, and a second kind of move, narrow; the kind that succeeds is drawn more often
+};
+
 /// MOMVO and PMOMVO, [Paper] Algorithms 1 and 2.
 struct OptimizerSettings {
   int slaves = 6;             ///< m, sub-swarms
@@ -29,7 +37,9 @@ struct OptimizerSettings {
   double wep_min = 0.2;       ///< rho_min of Eq. (19)
   double wep_max = 1.0;       ///< rho_max of Eq. (19)
   double exploitation = 6.0;  ///< gamma of Eq. (20)
-  double crowding = 2.0;      ///< alpha of Eq. (21), > 1
+  Operators operators = Operators::kAdaptive;
+  double focus = 0.7;       ///< probability that a narrow move starts from the best in the first objective
+  bool opposition = false;  ///< whether random universes come in opposite pairs
 };
 
 /// The paper's problem: one waypoint at a time along the axis.
@@ -50,7 +60,7 @@ struct HorizonSettings {
   int waypoints = 6;  ///< K
   double time = 6.0;  ///< looked ahead; the rest is straight
   double step = 0.1;  ///< between points of the timed path
-  int slaves = 4;
+  int slaves = 2;
   int sharing = 3;
   int population = 48;
   int generations = 40;             ///< budget of one plan in virtual time, and the upper bound in real time
@@ -70,6 +80,7 @@ struct HorizonSettings {
   double weight_length = 0.6;       ///< modified TOPSIS
   double weight_steering = 0.05;
   double weight_clearance = 0.35;
+  bool seeding = true;       ///< whether the search starts from manoeuvres
   double keep_ratio = 0.05;  ///< a previous plan is kept unless a new one is better by this fraction
 };
 

@@ -152,6 +152,107 @@ void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track,
   }
 }
 
+/// Where the vehicle is during some segments: never farther than `radius` from `center`, where it is at time `t`, and
+/// that time never farther than `half` away.
+struct Stretch {
+  std::size_t first = 0, last = 0;  // segment i leads to point i
+  Vec3 center = Vec3::Zero();
+  double t = 0.0;
+  double radius = 0.0;
+  double half = 0.0;
+
+  Stretch() = default;
+  /// Segments first to last - 1, of which each begins before `until`.
+  Stretch(std::span<const TimedPoint> path, std::size_t first_, std::size_t last_) : first(first_), last(last_) {
+    const TimedPoint& middle = path[(first + last - 2) / 2];  // one that a segment begins with
+    center = middle.position;
+    t = middle.t;
+    double squared = 0.0;
+    for (std::size_t i = first - 1; i < last; ++i) {
+      squared = std::max(squared, (path[i].position - center).squaredNorm());
+    }
+    radius = std::sqrt(squared);
+    half = std::max(t - path[first - 1].t, path[last - 1].t - t);
+  }
+};
+
+/// Bounds of the clearance to one track, to skip what can be neither the minimum nor a contact. It holds because an
+/// obstacle's velocity changes along a straight line up to where its acceleration ends, so that its speed is largest at
+/// one end.
+class Bound {
+ public:
+  Bound(const Track& track, const VerifierInput& input, double begin, double end)
+      : track_(track),
+        tracks_time_(input.tracks_time),
+        trust_(believed(track, input)),
+        radius_(input.vehicle_radius + track.radius) {
+    const double first = ObstacleAt(track, std::min(0.0, begin - tracks_time_), trust_).velocity.squaredNorm();
+    const double last = ObstacleAt(track, end - tracks_time_, trust_).velocity.squaredNorm();
+    speed_ = std::sqrt(first > last ? first : last);
+  }
+
+  /// Whether the clearance can fall below zero or below `ceiling` while the vehicle is within `radius` of `center` and
+  /// time within `half` of `t`. Lowers `ceiling` to the clearance at `center` and `t`.
+  [[nodiscard]] bool matters(const Vec3& center, double t, double radius, double half, double& ceiling) const {
+    const Vec3 obstacle = ObstacleAt(track_, t - tracks_time_, trust_).position;
+    const double distance = (center - obstacle).norm();
+    const double travel = speed_ * half;
+    const double scale = center.cwiseAbs().maxCoeff() + obstacle.cwiseAbs().maxCoeff() + radius + travel + 1.0;
+    const double limit = std::max(0.0, ceiling);
+    ceiling = std::min(ceiling, distance - radius_);
+    // Not "less than": numbers so large that their sums overflow must be looked at.
+    return !(distance - radius - travel - radius_ - kRounding * scale > limit);
+  }
+
+ private:
+  // Of a sum of some ten numbers, relative to the largest: 64 times what they can amount to.
+  static constexpr double kRounding = 1e-13;
+  const Track& track_;
+  double tracks_time_, trust_, radius_, speed_ = 0.0;
+};
+
+/// A path cut in stretches, for all tracks.
+class PathCheck {
+ public:
+  explicit PathCheck(const VerifierInput& input) : input_(input) {
+    std::size_t end = 1;
+    while (end < input.path.size() && !(input.path[end - 1].t >= input.until)) ++end;
+    if (end == 1) return;
+    whole_ = Stretch(input.path, 1, end);
+    const std::size_t segments = (end - 1 + kStretches - 1) / kStretches;
+    for (std::size_t first = 1; first < end; first += segments) {
+      stretches_[count_++] = Stretch(input.path, first, std::min(first + segments, end));
+    }
+  }
+
+  void add(const Track& track, Verification& result) {
+    if (count_ == 0) return;
+    const Bound bound(track, input_, input_.path.front().t, input_.path.back().t);
+    if (!bound.matters(whole_.center, whole_.t, whole_.radius, whole_.half, ceiling_)) return;
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Stretch& s = stretches_[n];
+      if (!bound.matters(s.center, s.t, s.radius, s.half, ceiling_)) continue;
+      for (std::size_t i = s.first; i < s.last; ++i) {
+        const TimedPoint& a = input_.path[i - 1];
+        const TimedPoint& b = input_.path[i];
+        const double half = 0.5 * (std::min(b.t, input_.until) - a.t);
+        const Vec3 way = (half / (b.t - a.t)) * (b.position - a.position);
+        if (!bound.matters(a.position + way, a.t + half, way.norm(), half, ceiling_)) continue;
+        check_segment(a, b, track, input_, result);
+        ceiling_ = std::min(ceiling_, result.min_clearance);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kStretches = 12;
+  const VerifierInput& input_;
+  Stretch whole_;
+  std::array<Stretch, kStretches> stretches_;
+  std::size_t count_ = 0;
+  double ceiling_ = kInfinity;  // a clearance that is reached, to any track
+};
+
 }  // namespace
 
 Verification verify(const VerifierInput& input) {
@@ -161,15 +262,15 @@ Verification verify(const VerifierInput& input) {
   for (const TimedPoint& point : input.path) {
     if (!input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
   }
+  PathCheck check(input);
   for (const Track& track : input.tracks) {
-    if (input.path.size() == 1) {
-      const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, believed(track, input));
-      fold({input.path[0].position - obstacle.position, Vec3::Zero(), Vec3::Zero(), 0.0}, input.path[0].t,
-           input.vehicle_radius + track.radius, track.id, result);
+    if (input.path.size() > 1) {
+      check.add(track, result);
+      continue;
     }
-    for (std::size_t i = 1; i < input.path.size(); ++i) {
-      check_segment(input.path[i - 1], input.path[i], track, input, result);
-    }
+    const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, believed(track, input));
+    fold({input.path[0].position - obstacle.position, Vec3::Zero(), Vec3::Zero(), 0.0}, input.path[0].t,
+         input.vehicle_radius + track.radius, track.id, result);
   }
   return result;
 }

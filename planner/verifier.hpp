@@ -37,8 +37,9 @@ struct VerifierInput {
 };
 
 /// Minimum over all instants, not samples: between two points and the instants at which a prediction changes, the
-/// squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9 m. O(points ·
-/// tracks).
+/// squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9 m. What is
+/// certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
+/// each track that comes near; at worst O(points · tracks).
 Verification verify(const VerifierInput& input);
 
 }  // namespace jink::planner

@@ -61,13 +61,25 @@ class WaypointProblem final : public Problem {
   [[nodiscard]] std::span<const Track> virtual_spheres() const { return virtual_spheres_; }
 
  private:
-  [[nodiscard]] double sphere_violation(const Vec3& to, double duration, const Track& sphere, double radius) const;
+  /// A sphere that the step could touch: an obstacle, grown by the vehicle and the margin, or a virtual sphere.
+  struct Sphere {
+    Vec3 offset = Vec3::Zero();  ///< from its centre to `from`, now
+    Vec3 velocity = Vec3::Zero();
+    Vec3 half_acceleration = Vec3::Zero();
+    double radius = 0.0;
+    double bulge = 0.0;  ///< per duration²: how far its path leaves its chord at most
+  };
+  struct Lanes;
+  struct Kernel;
+
+  void add_sphere(const Track& track, double radius);
   void find_narrow_passes(std::span<const Track> tracks);
+  [[nodiscard]] Box reach(double& longest) const;
 
   PaperSettings settings_;
   VehicleLimits vehicle_;
   Step step_;
-  std::vector<Track> near_;             // obstacles that the step could touch
+  std::vector<Sphere> spheres_;
   std::vector<Track> virtual_spheres_;  // Eq. (15)
 };
 

@@ -34,13 +34,21 @@ class WorkerPool {
  private:
   using Call = void (*)(const void*, std::uint32_t);
   void run_erased(std::uint32_t count, const void* context, Call call);
-  bool work_once();
-  void work(const std::stop_token& stop);
+  bool work_once(std::uint32_t self);
+  bool take(std::uint32_t owner, std::uint32_t& task);
+  void execute(std::uint32_t task);
+  void work(const std::stop_token& stop, std::uint32_t self);
 
-  // One word says which round is on, how many tasks it has and which is next; a task is taken by adding one. A late
-  // worker cannot take a task of a round that it did not see.
-  std::atomic<std::uint64_t> ticket_{0};
-  std::atomic<std::uint32_t> pending_{0};
+  // The tasks of a round are dealt out to the threads in turn, the same ones in every round, so that a task's data stay
+  // in its thread's cache; who has finished helps the others. Of each thread's share one word says which round is on,
+  // how many tasks it has and which is next; a task is taken by adding one. A late worker cannot take a task of a round
+  // that it did not see.
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> ticket{0};
+  };
+  std::vector<Share> shares_;
+  alignas(64) std::atomic<std::uint32_t> pending_{0};
+  std::uint64_t round_ = 0;
   const void* context_ = nullptr;  // written between rounds, read after a task is taken
   Call call_ = nullptr;
   std::atomic<bool> failed_{false};

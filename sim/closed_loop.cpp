@@ -201,7 +201,7 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
   Autopilot autopilot(vehicle);
   VirtualLink link(autopilot);
   VirtualTracks tracks(scenario.sensing, options.seed);
-  bridge::VirtualPlanner planner({settings.horizon, options.seed, options.threads},
+  bridge::VirtualPlanner planner({settings.horizon, settings.optimizer, options.seed, options.threads},
                                  1e-3 * settings.companion.planner_latency_ms);
   bridge::Companion companion(mission_of(scenario), settings, {link, tracks, planner, options.flight_observers});
 

@@ -120,7 +120,8 @@ int run(const FlyOptions& options) {
     }
   });
   bridge::DdsTrackReader tracks(mission.dds_domain, clock);
-  bridge::ThreadedPlanner planner({settings.horizon, options.common.seed, options.common.thread_count()}, clock);
+  bridge::ThreadedPlanner planner(
+      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock);
   bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});
   printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
                            mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -194,7 +195,7 @@ TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
 
 TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
   HorizonSettings s;
-  s.population = 2;
+  s.population = 1;
   EXPECT_THROW(HorizonPlanner{s}, std::invalid_argument);
 }
 
@@ -205,8 +206,24 @@ TEST(HorizonPlanner, ExpiredDeadlineStillGivesAPlan) {
   HorizonPlanner planner{HorizonSettings{}};
   const Plan plan = planner.plan(r, {}, 1, 0, {40, Budget::Time::min()}, pool);
   EXPECT_TRUE(plan.deadline_reached);
-  EXPECT_EQ(plan.generations, 10);
+  EXPECT_EQ(plan.schedule, 40);
+  EXPECT_EQ(plan.generations, 1);
   EXPECT_EQ(plan.status, PlanStatus::kReaches);
+}
+
+// With a pace known, a deadline becomes a number of generations, and with that number the plan is repeated.
+TEST(HorizonPlanner, PlanUnderADeadlineIsRepeatedByItsSchedule) {
+  const std::vector<Track> tracks = wall();
+  const PathRequest r = request(tracks);
+  WorkerPool pool(2);
+  HorizonPlanner planner{HorizonSettings{}};
+  planner.plan(r, {}, 1, 0, {40}, pool);
+  const auto soon = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
+  const Plan cut = planner.plan(r, {}, 1, 1, {1000000, soon}, pool);
+  EXPECT_LT(cut.schedule, 1000000);
+  EXPECT_LE(cut.generations, cut.schedule);
+  const Plan again = planner.plan(r, {}, 1, 1, {cut.schedule, Budget::Time::max(), cut.generations}, pool);
+  expect_same_path(again.path, cut.path);
 }
 
 Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {

@@ -299,8 +299,96 @@ TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
   }
   EXPECT_GT(violated, 50);
   EXPECT_LT(violated, 590);
-  EXPECT_GT(kept, 60U * 33U);  // more than one chunk
+  EXPECT_GT(kept, 60U * 33U);
   EXPECT_LT(kept, 60U * 110U);
+}
+
+/// Requests that strain the bounds of where the vehicle can be: fast away from the target, beyond the limits of speed
+/// and climb, in a narrow volume, on a short way, with other limits.
+PathRequest strained(RandomStream& random, int round) {
+  PathRequest r = request(round % 5 == 0 ? Vec3(3, 1, 2) : Vec3(40, 0, 2));
+  r.velocity = random_vector(random, round % 3 == 0 ? 12.0 : 3.0);
+  if (round % 4 == 0) r.volume = {{-2, -1, 1}, {45, 1, 3}};
+  if (round % 7 == 0) r.vehicle.max_acceleration = 1.0;
+  if (round % 11 == 0) r.vehicle.max_speed = 15.0;
+  r.margin = 0.35;
+  r.track_acceleration = 0.4;
+  r.acceleration_trust = round % 2 == 0 ? 0.7 : kInfinity;
+  return r;
+}
+
+TEST(PathProblem, LeavesOutNoObstacleThatAnyMotionMeets) {
+  const HorizonSettings settings;
+  PathProblem problem{settings};
+  RandomStream random(61);
+  int met = 0;
+  for (int round = 0; round < 150; ++round) {
+    std::vector<Track> tracks = random_tracks(random);
+    for (Track& track : tracks) {  // half of them far, of which many come near
+      if (random.below(2) == 0) continue;
+      track.position *= random.uniform(2.0, 6.0);
+      track.velocity = -track.position / random.uniform(1.0, 6.0) + random_vector(random, 4.0);
+      track.acceleration *= random.uniform(0.0, 4.0);
+    }
+    PathRequest r = strained(random, round);
+    r.tracks = tracks;
+    problem.prepare(r);
+    for (int i = 0; i < 8; ++i) {
+      const std::vector<double> x = random_variables(random, problem, i < 2 ? 0.1 : 1.0);
+      const TimedPath path = problem.motion(x);
+      const Cost cost = evaluate(problem, x);
+      const Cost expected = reference_cost(problem, settings, r, path);
+      double outside = 0.0;
+      for (int n = 1; n <= problem.steps(); ++n) {
+        const Vec3 p = sample(path, n * settings.step).position;
+        outside += settings.step * (p - p.cwiseMax(r.volume.min).cwiseMin(r.volume.max)).norm();
+      }
+      const double scale = 1.0 + expected.violation + outside;
+      ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9 * scale) << round;
+      if (path.back().t < problem.horizon()) continue;  // put on the target at the end, which evaluation leaves out
+      ASSERT_NEAR(cost.violation, expected.violation + outside, 1e-9 * scale) << round;
+      met += expected.violation > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(met, 200);
+}
+
+// The plan flown until now may be where no new solution can be.
+TEST(PathProblem, CostOfCountsObstaclesWhereNoSolutionCanBe) {
+  const HorizonSettings settings;
+  PathProblem problem{settings};
+  RandomStream random(62);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<Track> tracks = random_tracks(random);
+    PathRequest r = strained(random, 1);
+    r.tracks = tracks;
+    problem.prepare(r);
+    TimedPath path;
+    for (int i = 0; i < 8; ++i) path.push_back({0.9 * i, random_vector(random, 20.0), Vec3::Zero(), Vec3::Zero()});
+    const Cost cost = problem.cost_of(path);
+    const Cost expected = reference_cost(problem, settings, r, path);
+    ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9);
+    ASSERT_NEAR(cost.violation, expected.violation, 1e-9);
+  }
+}
+
+// What is measured is what is flown, to the bit.
+TEST(PathProblem, MeasuresTheMotionItself) {
+  PathProblem problem{HorizonSettings{}};
+  RandomStream random(63);
+  for (int round = 0; round < 50; ++round) {
+    const std::vector<Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.velocity = random_vector(random, 2.0);
+    r.tracks = tracks;
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem);
+    TimedPath path = problem.motion(x);
+    ASSERT_GT(path.back().t, problem.horizon());
+    for (std::size_t n = 0; n < path.size(); ++n) path[n].t = static_cast<double>(n) * 0.1;  // sampled at its points
+    EXPECT_EQ(problem.cost_of(path).f, evaluate(problem, x).f);
+    EXPECT_EQ(problem.cost_of(path).violation, evaluate(problem, x).violation);
+  }
 }
 
 // 0.1 s steps at 200 m/s: 20 m between two instants, across the path.
@@ -378,19 +466,31 @@ TEST(PathProblem, CostOfAMotionIsItsEvaluation) {
   }
 }
 
+// To the bit, whatever the lane, the block and what else is in it; and it is the motion that is measured.
 TEST(PathProblem, EvaluatesSeveralSolutionsLikeOne) {
   PathProblem problem{HorizonSettings{}};
-  PathRequest r = request();
-  problem.prepare(r);
   RandomStream random(9);
-  std::vector<double> all;
-  for (int i = 0; i < 5; ++i) {
-    const std::vector<double> x = random_variables(random, problem);
-    all.insert(all.end(), x.begin(), x.end());
+  const std::vector<Track> tracks = random_tracks(random);
+  PathRequest r = request();
+  r.tracks = tracks;
+  r.margin = 0.35;
+  r.volume = {{-1, -4, 0.5}, {50, 4, 6}};
+  r.velocity = {2, 1, 0};
+  problem.prepare(r);
+  for (const std::size_t count : {1U, 3U, 4U, 5U, 8U, 9U, 12U, 13U, 17U, 25U, 48U}) {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::vector<double> x = random_variables(random, problem, i % 2 == 0 ? 1.0 : 0.2);
+      all.insert(all.end(), x.begin(), x.end());
+    }
+    std::vector<Cost> costs(count);
+    problem.evaluate(all, costs);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Cost alone = evaluate(problem, std::span(all).subspan(18 * i, 18));
+      EXPECT_EQ(costs[i].f, alone.f);
+      EXPECT_EQ(costs[i].violation, alone.violation);
+    }
   }
-  std::vector<Cost> costs(5);
-  problem.evaluate(all, costs);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(costs[i].f, evaluate(problem, std::span(all).subspan(18 * i, 18)).f);
 }
 
 // Waypoints lie on the path, but the vehicle follows them with a lag, so the motion is not the same again: on average

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -167,15 +168,36 @@ TEST(Pmomvo, WorksWithMoreCyclesThanIterations) {
   }
 }
 
-TEST(Pmomvo, ExpiredDeadlineStillGivesTheFirstCycle) {
+TEST(Pmomvo, ExpiredDeadlineStillGivesTheFirstGeneration) {
   const Zdt1 problem;
   WorkerPool pool(2);
   Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
   const Front& front = optimizer.run(problem, {}, 1, 0, {40, Budget::Time::min()}, pool);
   expect_front(front);
   EXPECT_TRUE(optimizer.report().deadline_reached);
-  EXPECT_EQ(optimizer.report().generations, 10);  // 40 in four cycles
-  EXPECT_EQ(optimizer.report().evaluations, 10 * 50);
+  EXPECT_EQ(optimizer.report().generations, 1);
+  EXPECT_EQ(optimizer.report().evaluations, 50);
+}
+
+// The master that looks at the clock after every generation gives the same bits as the one that does not.
+TEST(Pmomvo, ADeadlineThatIsFarAwayChangesNothing) {
+  const Zdt1 problem;
+  WorkerPool pool(2);
+  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  const auto far = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  const Front with = optimizer.run(problem, {}, 1, 0, {40, far}, pool);
+  EXPECT_FALSE(optimizer.report().deadline_reached);
+  expect_same(with, optimizer.run(problem, {}, 1, 0, {40}, pool));
+}
+
+TEST(Pmomvo, StopsAfterAnyGeneration) {
+  const Zdt1 problem;
+  WorkerPool pool(2);
+  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  for (const int stop : {1, 7, 10, 39, 40, 100}) {
+    expect_front(optimizer.run(problem, {}, 1, 0, {40, Budget::Time::max(), stop}, pool));
+    EXPECT_EQ(optimizer.report().generations, std::min(stop, 40));
+  }
 }
 
 // Budget: the same schedule, stopped after the generations that the stopped run reports, repeats it.

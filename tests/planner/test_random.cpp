@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <vector>
@@ -92,6 +93,18 @@ TEST(RandomStream, UniformUsesAll53Bits) {
     seen_bits |= static_cast<std::uint64_t>(scaled);
   }
   EXPECT_EQ(seen_bits, (std::uint64_t{1} << 53U) - 1);
+}
+
+TEST(RandomStream, PairIsTheTwoHalvesOfOneDraw) {
+  RandomStream bits(11);
+  RandomStream random(11);
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint64_t draw = bits.next();
+    const auto [high, low] = random.uniform_pair();
+    ASSERT_EQ(high, static_cast<double>(draw >> 32U) / 4294967296.0);
+    ASSERT_EQ(low, static_cast<double>(draw & 0xffffffffU) / 4294967296.0);
+    ASSERT_LT(std::max(high, low), 1.0);
+  }
 }
 
 TEST(RandomStream, UniformIntervalStaysInsideEvenWhenItIsOneUlpWide) {

@@ -206,6 +206,77 @@ RandomCase random_case(std::uint64_t seed) {
   return c;
 }
 
+/// Long paths, stops and turns among near and far tracks of all speeds.
+RandomCase random_flight(std::uint64_t seed) {
+  RandomStream random(seed);
+  const auto vec = [&](double range) {
+    const double x = random.uniform(-range, range);
+    const double y = random.uniform(-range, range);
+    return Vec3(x, y, random.uniform(-range, range));
+  };
+  RandomCase c;
+  Vec3 position = vec(5.0);
+  double t = random.uniform(0.0, 0.5);
+  const std::size_t points = 2 + random.below(60);
+  for (std::size_t i = 0; i < points; ++i) {
+    c.path.push_back({t, position, kZero, kZero});
+    t += random.uniform(0.05, 0.3);
+    if (random.below(4) > 0) position += Vec3(0.4, 0, 0) + vec(0.4);
+  }
+  const double spread = random.below(2) == 0 ? 6.0 : 60.0;
+  for (std::uint64_t id = 0; id < 25; ++id) {
+    Track track = moving(vec(spread), vec(random.below(3) == 0 ? 20.0 : 2.0), random.uniform(0.1, 1.5), id);
+    if (random.below(2) == 0) track.acceleration = vec(6.0);
+    track.age = random.uniform(0.0, 0.5);
+    c.tracks.push_back(track);
+  }
+  c.trust = random.below(3) == 0 ? kInfinity : random.uniform(0.0, 4.0);
+  return c;
+}
+
+/// The exact check of one segment against one track at a time, for which there is nothing to skip.
+Verification piece_by_piece(const VerifierInput& input) {
+  Verification worst;
+  for (const Track& track : input.tracks) {
+    for (std::size_t i = 1; i < input.path.size(); ++i) {
+      if (input.path[i - 1].t >= input.until) continue;
+      VerifierInput one = input;
+      one.path = input.path.subspan(i - 1, 2);
+      one.tracks = {&track, 1};
+      const Verification v = verify(one);
+      if (v.min_clearance < worst.min_clearance) {
+        worst.min_clearance = v.min_clearance;
+        worst.nearest_id = v.nearest_id;
+        worst.t_min_clearance = v.t_min_clearance;
+      }
+      if (v.first_contact && (!worst.first_contact || *v.first_contact < *worst.first_contact)) {
+        worst.first_contact = v.first_contact;
+        worst.contact_speed = v.contact_speed;
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(Verifier, SkipsNothingThatMatters) {
+  int contacts = 0;
+  for (std::uint64_t seed = 1000; seed < 5000; ++seed) {
+    const RandomCase c = random_flight(seed);
+    const double until = seed % 3 == 0 ? c.path[c.path.size() / 2].t + 0.01 : kInfinity;
+    const VerifierInput input{c.path, c.tracks, 0.0, 0.3, {}, c.trust, until};
+    const Verification v = verify(input);
+    const Verification expected = piece_by_piece(input);
+    ASSERT_NEAR(v.min_clearance, expected.min_clearance, 1e-9) << seed;
+    ASSERT_EQ(v.first_contact, expected.first_contact) << seed;
+    ASSERT_EQ(v.contact_speed, expected.contact_speed) << seed;
+    ASSERT_EQ(v.nearest_id, expected.nearest_id) << seed;
+    ASSERT_EQ(v.t_min_clearance, expected.t_min_clearance) << seed;
+    contacts += v.first_contact ? 1 : 0;
+  }
+  EXPECT_GT(contacts, 400);
+  EXPECT_LT(contacts, 3600);
+}
+
 TEST(Verifier, MatchesDenseSampling) {
   constexpr double kStep = 1e-3;
   constexpr double kFastest = 60.0;  // bound of the relative speed of these cases, m/s

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/manoeuvres.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "planner/obstacle_motion.hpp"
+
+namespace jink::planner {
+namespace {
+
+constexpr std::size_t kEncounters = 3;  // looked at, the first ones
+constexpr double kOnTime = 1.2;         // s, about an encounter, in which a displacement is held in full
+constexpr double kReturn = 1.0;         // s, in which it fades before and after
+
+/// Where undisturbed flight comes too close to an obstacle.
+struct Encounter {
+  double t = 0.0;       // of the closest approach
+  Vec3 apart;           // from the obstacle to the vehicle, then
+  Vec3 closing;         // velocity of the vehicle relative to the obstacle, then
+  double wanted = 0.0;  // distance between the centres
+};
+
+/// The first encounters, in order of time.
+std::vector<Encounter> encounters(const PathRequest& request, const TimedPath& undisturbed, double until,
+                                  double clearance) {
+  std::vector<Encounter> list;
+  for (const Track& track : request.tracks) {
+    Encounter e;
+    e.wanted = track.radius + request.vehicle.radius + clearance;
+    double least = e.wanted * e.wanted;
+    bool met = false;
+    for (const TimedPoint& point : undisturbed) {
+      if (point.t > until) break;
+      const Vec3 apart = point.position - predict_position(track, point.t, request.acceleration_trust);
+      if (apart.squaredNorm() >= least) continue;
+      least = apart.squaredNorm();
+      met = true;
+      e.t = point.t;
+      e.apart = apart;
+      e.closing = point.velocity - predict_velocity(track, point.t, request.acceleration_trust);
+    }
+    if (met) list.push_back(e);
+  }
+  const std::size_t first = std::min(kEncounters, list.size());
+  std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(first), list.end(),
+                    [](const Encounter& a, const Encounter& b) { return a.t < b.t; });
+  list.resize(first);
+  return list;
+}
+
+/// The displacements that lead past an obstacle, in the plane across the relative motion: near side, far side, and
+/// across them either way.
+std::array<Vec3, 4> ways_past(const Encounter& e, const Vec3& heading) {
+  const double speed = e.closing.norm();
+  const Vec3 along = speed > 1e-6 ? Vec3(e.closing / speed) : heading;
+  const Vec3 across = e.apart - e.apart.dot(along) * along;
+  Vec3 side = across;
+  if (side.norm() < 1e-6) side = along.cross(Vec3::UnitZ());  // dead centre: any side will do
+  if (side.norm() < 1e-6) side = Vec3::UnitX();
+  side.normalize();
+  const Vec3 other = along.cross(side);
+  return {e.wanted * side - across, -e.wanted * side - across, e.wanted * other - across, -e.wanted * other - across};
+}
+
+/// Undisturbed flight with `displacement` about time `t`: all of it while it counts, none before and after; but what it
+/// falls behind (or hurries ahead) along `heading` stays.
+TimedPath displaced(const TimedPath& undisturbed, std::span<const double> times, double t, const Vec3& displacement,
+                    const Vec3& heading) {
+  TimedPath path;
+  const Vec3 lag = displacement.dot(heading) * heading;
+  for (const double time : times) {
+    const double off = std::abs(time - t) - 0.5 * kOnTime;
+    const double share = std::clamp(1.0 - off / kReturn, 0.0, 1.0);
+    const Vec3 offset = share * displacement + (time > t ? 1.0 - share : 0.0) * lag;
+    path.push_back({time, sample(undisturbed, time).position + offset, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
+/// Undisturbed flight as far as it would have come at warped times.
+template <typename Warp>
+TimedPath warped(const TimedPath& undisturbed, std::span<const double> times, const Warp& warp) {
+  TimedPath path;
+  for (const double time : times) {
+    path.push_back({time, sample(undisturbed, warp(time)).position, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,
+                                  std::span<const double> times, double clearance) {
+  std::vector<TimedPath> paths;
+  const PathFrame frame(request.position, request.target);
+  const double until = times.back();
+  for (const Encounter& e : encounters(request, undisturbed, until, clearance)) {
+    for (const Vec3& displacement : ways_past(e, frame.axis)) {
+      paths.push_back(displaced(undisturbed, times, e.t, displacement, frame.axis));
+    }
+  }
+  for (const double rate : {0.9, 0.8, 0.65, 0.4, 1.3}) {
+    paths.push_back(warped(undisturbed, times, [&](double t) { return rate * t; }));
+  }
+  for (const double wait : {0.5, 1.0, 2.0, 4.0}) {
+    paths.push_back(warped(undisturbed, times, [&](double t) { return std::max(0.0, t - wait); }));
+  }
+  paths.push_back(warped(undisturbed, times, [](double) { return 0.0; }));
+  for (const double distance : {0.7, 1.5, 3.0}) {
+    for (const Vec3& side : {frame.left, Vec3(-frame.left), frame.up, Vec3(-frame.up)}) {
+      paths.push_back(displaced(undisturbed, times, 0.0, Vec3::Zero(), frame.axis));
+      for (std::size_t k = 0; 3 * k < 2 * times.size(); ++k) paths.back()[k].position += distance * side;
+    }
+  }
+  return paths;
+}
+
+}  // namespace jink::planner

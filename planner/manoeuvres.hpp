@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pilot would try first: rough paths that the optimizer starts from. Nothing here is checked or promised free.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "planner/path_problem.hpp"
+#include "planner/settings.hpp"
+#include "planner/trajectory.hpp"
+
+namespace jink::planner {
+
+/// Paths from the request's state, one point at each time of `times` (rising, s):
+/// - undisturbed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
+/// - lanes beside, above and below it, left again towards the end;
+/// - for each of the first obstacles that undisturbed flight meets, the displacements that lead just past it in
+/// relative
+///   motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far side, and
+///   between them, taken around the time of the encounter.
+/// `undisturbed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
+/// is to be kept from an obstacle's surface. O(tracks · points).
+std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,
+                                  std::span<const double> times, double clearance);
+
+}  // namespace jink::planner

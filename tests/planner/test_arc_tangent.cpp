@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/arc_tangent.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "planner/random.hpp"
+
+namespace jink::planner {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(ArcTangent, KnowsTheSpecialDirections) {
+  EXPECT_EQ(arc_tangent2(0.0, 0.0), 0.0);
+  EXPECT_EQ(arc_tangent2(0.0, 3.0), 0.0);
+  EXPECT_EQ(arc_tangent2(0.0, -3.0), kPi);
+  EXPECT_EQ(arc_tangent2(2.0, 0.0), kPi / 2);
+  EXPECT_DOUBLE_EQ(arc_tangent2(1.0, 1.0), kPi / 4);
+  EXPECT_DOUBLE_EQ(arc_tangent2(1.0, -1.0), 3 * kPi / 4);
+  EXPECT_DOUBLE_EQ(arc_tangent2(std::sqrt(3.0), 1.0), kPi / 3);
+}
+
+TEST(ArcTangent, MatchesTheLibraryInEveryDirectionAndSize) {
+  RandomStream random(1);
+  double worst = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    const double angle = random.uniform(0.0, kPi);
+    const double size = std::exp(random.uniform(-200.0, 200.0));
+    const double y = std::abs(size * std::sin(angle));
+    const double x = size * std::cos(angle);
+    worst = std::max(worst, std::abs(arc_tangent2(y, x) - std::atan2(y, x)));
+  }
+  EXPECT_LT(worst, 9e-16);  // two units in the last place of pi
+}
+
+TEST(ArcTangent, IsAccurateForTinyAngles) {
+  for (double y = 1e-300; y < 1e-3; y *= 7.0) EXPECT_DOUBLE_EQ(arc_tangent2(y, 1.0), std::atan2(y, 1.0));
+}
+
+}  // namespace
+}  // namespace jink::planner
