@@ -190,6 +190,13 @@ void HorizonPlanner::keep_previous(const PathRequest& request, const TimedPath& 
   plan.kept_previous = true;
 }
 
+HorizonSettings open_loop_settings(HorizonSettings settings) {
+  settings.time_weight *= 0.04;
+  settings.deviation_weight *= 0.2;
+  settings.length_band *= 0.01;
+  return settings;
+}
+
 Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed, Budget budget,
                     WorkerPool& pool) {
   Plan whole;

@@ -49,6 +49,11 @@ class HorizonPlanner {
   double pace_ = 0.0;  // s per generation, of the plan before; 0: not known
 };
 
+/// The settings for planning open loop: there the shortest path is asked for, so lost time and deviation from
+/// undisturbed flight only decide between paths of nearly equal length, and nothing longer is chosen for being
+/// smoother.
+HorizonSettings open_loop_settings(HorizonSettings settings);
+
 struct OpenLoopRequest {
   PathRequest path;         ///< from rest at the start; tracks valid at t = 0
   double time_limit = 0.0;  ///< the path is cut here

@@ -60,10 +60,10 @@ struct HorizonSettings {
   int waypoints = 6;  ///< K
   double time = 6.0;  ///< looked ahead; the rest is straight
   double step = 0.1;  ///< between points of the timed path
-  int slaves = 2;
+  int slaves = 4;
   int sharing = 3;
   int population = 48;
-  int generations = 40;             ///< budget of one plan in virtual time, and the upper bound in real time
+  int generations = 100;            ///< budget of one plan in virtual time, and the upper bound in real time
   double deadline_ms = 40.0;        ///< budget of one plan in real time
   double lateral_range = 6.0;       ///< how far waypoints may leave the straight line
   double back_range = 2.0;          ///< how far they may fall back behind the start

@@ -93,7 +93,7 @@ planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& 
     }
     return planner::plan_paper(request, pool);
   }
-  planner::HorizonPlanner planner(settings.horizon, settings.optimizer);
+  planner::HorizonPlanner planner(planner::open_loop_settings(settings.horizon), settings.optimizer);
   planner::OpenLoopRequest request;
   request.path.position = scenario.start;
   request.path.target = scenario.target;

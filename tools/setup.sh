@@ -1,17 +1,23 @@
 #!/usr/bin/env bash
 # Installs what jink builds with on Debian 12: packages by apt, Python packages into .venv. Quick when nothing is missing.
 # Called by tools/demo.sh, tools/test.sh and .ci/run; safe to run by hand. Not root: uses sudo and says so.
+#   tools/setup.sh [bench]        bench: what tools/bench.sh needs too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
-  libeigen3-dev libyaml-cpp-dev libgtest-dev libbenchmark-dev
+  libeigen3-dev libyaml-cpp-dev libgtest-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev
   libfastrtps-dev libfastcdr-dev fastddsgen
   python3 python3-venv
   clang-format-14 clang-tidy-14
 )
+case "${1:-}" in
+  "") ;;
+  bench) packages+=(libbenchmark-dev libpagmo-dev) ;;
+  *) echo "setup: unknown group of packages: $1" >&2; exit 2 ;;
+esac
 missing=()
 for p in "${packages[@]}"; do
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$p" 2>/dev/null)" = installed ] || missing+=("$p")

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_families.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "sim/world.hpp"
+#include "sim/world_families_impl.hpp"
+
+namespace jink::sim {
+namespace families {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double cruise_of(const Vec3& forward, const planner::VehicleLimits& limits) {
+  const double climb = std::abs(forward.z());
+  return climb * limits.cruise_speed > limits.max_climb ? limits.max_climb / climb : limits.cruise_speed;
+}
+
+}  // namespace
+
+Mission::Mission(const Vec3& start, const Vec3& target, const planner::VehicleLimits& limits)
+    : start_(start),
+      forward_((target - start).normalized()),
+      left_(Vec3::UnitY()),
+      up_(Vec3::Zero()),
+      length_((target - start).norm()),
+      cruise_(cruise_of(forward_, limits)) {
+  const double level = std::hypot(forward_.x(), forward_.y());
+  if (level > 1e-9) left_ = Vec3(-forward_.y(), forward_.x(), 0.0) / level;
+  up_ = Vec3(forward_.y() * left_.z() - forward_.z() * left_.y(), forward_.z() * left_.x() - forward_.x() * left_.z(),
+             forward_.x() * left_.y() - forward_.y() * left_.x());
+}
+
+double Mission::duration() const {
+  return length_ / cruise_ + 0.5 * cruise_ / kStraightAcceleration + 0.5 * cruise_ / kStraightBraking;
+}
+
+double Mission::along(double t) const {
+  const double speeding_up = cruise_ / kStraightAcceleration;
+  const double left = duration() - t;
+  if (t <= 0.0) return 0.0;
+  if (left <= 0.0) return length_;
+  if (t < speeding_up) return 0.5 * kStraightAcceleration * t * t;
+  if (left < cruise_ / kStraightBraking) return length_ - 0.5 * kStraightBraking * left * left;
+  return cruise_ * (t - 0.5 * speeding_up);
+}
+
+double Mission::time_at(double along) const {
+  return along / cruise_ + 0.5 * cruise_ / kStraightAcceleration;
+}
+
+double Mission::random_place(RandomStream& random, double from, double to) const {
+  const double first = 0.5 * cruise_ * cruise_ / kStraightAcceleration;
+  const double last = length_ - 0.5 * cruise_ * cruise_ / kStraightBraking;
+  return first + (last - first) * random.uniform(from, to);
+}
+
+Mission mission_of(const config::Scenario& scenario) {
+  return {scenario.start, scenario.target, scenario.vehicle};
+}
+
+int random_count(RandomStream& random, int least, int most) {
+  return least + static_cast<int>(random.below(static_cast<std::uint64_t>(most - least) + 1));
+}
+
+Vec3 random_vector(RandomStream& random, const VectorRange& range) {
+  const double length = random.uniform(range.min, range.max);
+  const double azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
+  const double elevation = kDegree * random.uniform(range.min_elevation_deg, range.max_elevation_deg);
+  const double level = length * std::cos(elevation);
+  return {level * std::cos(azimuth), level * std::sin(azimuth), length * std::sin(elevation)};
+}
+
+void free_mission(config::Scenario& scenario, RandomStream& random, double min_length, double max_length) {
+  const double x = random.uniform(-5, 5);
+  const double y = random.uniform(-5, 5);
+  const Vec3 way = random_vector(random, {min_length, max_length, -12, 12});
+  scenario.start = {x, y, random.uniform(1.5, 4.0) + std::max(0.0, -way.z())};
+  scenario.target = scenario.start + way;
+}
+
+void maybe_enclose(config::Scenario& scenario, RandomStream& random) {
+  const double room = random.uniform(3.0, 6.0);
+  if (random.below(2) == 0) return;
+  scenario.world = planner::Box{scenario.start.cwiseMin(scenario.target).array() - room,
+                                scenario.start.cwiseMax(scenario.target).array() + room};
+  scenario.world->min.z() = 0.0;
+}
+
+void corridor_mission(config::Scenario& scenario, RandomStream& random, double length, double width, double height) {
+  constexpr double kMargin = 1.0;  // m, from the walls of the corridor
+  const bool along_y = random.below(2) == 1;
+  const bool reversed = random.below(2) == 1;
+  const auto oriented = [&](double along, double across, double z) {
+    return along_y ? Vec3(across, along, z) : Vec3(along, across, z);
+  };
+  scenario.world = planner::Box{oriented(-kMargin, -0.5 * width, 0.0), oriented(length - kMargin, 0.5 * width, height)};
+  const double across = random.uniform(kMargin - 0.5 * width, 0.5 * width - kMargin);
+  const double z = random.uniform(kMargin, height - kMargin);
+  scenario.start = oriented(0.0, across, z);
+  scenario.target = oriented(length - 2 * kMargin, across, z);
+  if (reversed) std::swap(scenario.start, scenario.target);
+}
+
+void add_meeting(config::Scenario& scenario, const Mission& mission, double along, double radius, const Vec3& velocity,
+                 const Vec3& offset, double wait) {
+  const Vec3 position = mission.at(along) + offset - (wait + mission.time_at(along)) * velocity;
+  scenario.obstacles.push_back({config::SphereShape{radius}, config::LinearMotion{position, velocity, Vec3::Zero()}});
+}
+
+double random_wait(RandomStream& random, int i) {
+  constexpr int kAtOnce = 2;
+  constexpr double kLongest = 8.0;  // s
+  return i < kAtOnce ? 0.0 : random.uniform(0.0, kLongest);
+}
+
+Vec3 random_offset(RandomStream& random, double radius) {
+  constexpr double kDeepest = 0.5;  // of the way in to the obstacle's centre that remains at least
+  return random_vector(random, {0.0, kDeepest * radius, -90, 90});
+}
+
+}  // namespace families
+
+namespace {
+
+struct Family {
+  std::string_view name;
+  bool linear;
+  void (*build)(config::Scenario&, planner::RandomStream&);
+};
+
+constexpr std::array kFamilies = {Family{"crossing", true, families::build_crossing},
+                                  Family{"head_on", true, families::build_head_on},
+                                  Family{"overtaking", true, families::build_overtaking},
+                                  Family{"falling", true, families::build_falling},
+                                  Family{"gates", true, families::build_gates},
+                                  Family{"darts", true, families::build_darts},
+                                  Family{"vertical", true, families::build_vertical},
+                                  Family{"backward", true, families::build_backward},
+                                  Family{"walls", false, families::build_walls},
+                                  Family{"target_occupied", false, families::build_target_occupied},
+                                  Family{"crowd", false, families::build_crowd},
+                                  Family{"turning", false, families::build_turning},
+                                  Family{"cloud", false, families::build_cloud}};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kFamilies.size()> names;
+  std::transform(kFamilies.begin(), kFamilies.end(), names.begin(), [](const Family& family) { return family.name; });
+  return names;
+}();
+
+// Each piece of the flight is taken for a straight way at constant speed: off by kStraightAcceleration · kStep² / 8.
+bool hits_straight(const World& world) {
+  constexpr double kStep = 0.05;  // s
+  const families::Mission mission = families::mission_of(world.scenario());
+  for (double t = 0.0; t < mission.duration(); t += kStep) {
+    const Vec3 from = mission.at(mission.along(t));
+    const Vec3 to = mission.at(mission.along(t + kStep));
+    if (world.sweep(from, t, to, t + kStep).min_clearance < -kStraightOverlap - 1e-3) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::span<const std::string_view> world_families() {
+  return kNames;
+}
+
+bool is_linear(std::string_view family) {
+  return std::any_of(kFamilies.begin(), kFamilies.end(),
+                     [&](const Family& known) { return known.linear && known.name == family; });
+}
+
+// The builders aim to block the line and to leave the start free. Where a draw fails in that, the next one is taken.
+config::Scenario make_world(std::string_view family, std::uint64_t seed) {
+  constexpr std::uint64_t kMostAttempts = 1000;
+  const auto* known = std::find_if(kFamilies.begin(), kFamilies.end(),
+                                   [&](const Family& candidate) { return candidate.name == family; });
+  if (known == kFamilies.end()) throw std::invalid_argument("unknown world family: " + std::string(family));
+  const auto stream = static_cast<std::uint64_t>(known - kFamilies.begin());
+  for (std::uint64_t attempt = 0; attempt < kMostAttempts; ++attempt) {
+    planner::RandomStream random(seed, stream, attempt);
+    config::Scenario scenario;
+    scenario.name = std::string(family) + "-" + std::to_string(seed);
+    scenario.vehicle_name = "ardrone2";
+    known->build(scenario, random);
+    scenario.time_limit = 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
+    const World world(scenario);
+    if (world.clearance(scenario.start, 0.0) >= kStartClearance && hits_straight(world)) return scenario;
+  }
+  throw std::logic_error("no world of the family " + std::string(family) + " for seed " + std::to_string(seed));
+}
+
+}  // namespace jink::sim

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/bench/missions.hpp"
+
+#include <algorithm>
+
+#include "config/scenario.hpp"
+#include "config/settings.hpp"
+#include "planner/indicators.hpp"
+#include "planner/pmomvo.hpp"
+#include "sim/world.hpp"
+
+namespace jink::bench {
+namespace {
+
+/// PMOMVO, which keeps a copy of every problem that it is given.
+class Recorder final : public planner::Optimizer {
+ public:
+  explicit Recorder(const planner::OptimizerSettings& settings) : optimizer_(settings, 2, 2) {}
+  const planner::Front& run(const planner::Problem& problem, std::span<const double> initial, std::uint64_t seed,
+                            std::uint64_t stream, const planner::Budget& budget, planner::WorkerPool& pool) override {
+    steps_.push_back(dynamic_cast<const planner::WaypointProblem&>(problem));
+    return optimizer_.run(problem, initial, seed, stream, budget, pool);
+  }
+  [[nodiscard]] const planner::RunReport& report() const override { return optimizer_.report(); }
+  [[nodiscard]] const std::vector<planner::WaypointProblem>& steps() const { return steps_; }
+
+ private:
+  planner::Pmomvo optimizer_;
+  std::vector<planner::WaypointProblem> steps_;
+};
+
+}  // namespace
+
+Mission::Mission(const std::string& name) {
+  const sim::World world(config::load_scenario(config::config_folder() / "scenarios" / (name + ".yaml")));
+  const config::Scenario& scenario = world.scenario();
+  for (int i = 0; i < world.obstacle_count(); ++i) tracks_.push_back(world.exact_track(i, 0.0));
+  request_.start = scenario.start;
+  request_.target = scenario.target;
+  request_.volume = world.volume();
+  if (!scenario.world) request_.volume.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
+  request_.vehicle = scenario.vehicle;
+  request_.tracks = tracks_;
+}
+
+planner::PaperRequest Mission::request(std::uint64_t seed) const {
+  planner::PaperRequest request = request_;
+  request.seed = seed;
+  return request;
+}
+
+double Mission::slr(const planner::Plan& plan) const {
+  return planner::straight_line_rate(planner::path_length(plan.path), (request_.target - request_.start).norm());
+}
+
+std::vector<planner::WaypointProblem> record_steps(const Mission& mission, std::uint64_t seed,
+                                                   planner::WorkerPool& pool) {
+  const planner::PaperRequest request = mission.request(seed);
+  Recorder recorder(request.optimizer);
+  plan_paper(request, recorder, pool);
+  return recorder.steps();
+}
+
+const planner::WaypointProblem& middle_step() {
+  static const planner::WaypointProblem step = [] {
+    const Mission mission("table2-5");
+    planner::WorkerPool pool(1);
+    const auto steps = record_steps(mission, 1, pool);
+    return steps[steps.size() / 2];
+  }();
+  return step;
+}
+
+}  // namespace jink::bench
