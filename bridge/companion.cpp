@@ -148,7 +148,7 @@ void Companion::start_plan(double now) {
   PlanJob job;
   job.number = summary_.plans;
   job.begun = now;
-  job.start = now + parts_.planner.latency();
+  job.start = now + std::max(parts_.planner.latency(), companion.commitment);
   job.newest_track = table_.newest_message();
   job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
 
@@ -219,7 +219,8 @@ void Companion::move(double now, const Decision& decision) {
   if (announced_send_failure_) event(now, "send_works", "setpoints can be sent again");
   announced_send_failure_ = false;
   for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
-  if (unsent_track_ && now + settings_.companion.setpoint_lead >= unsent_from_) {
+  const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.acceleration_lead);
+  if (unsent_track_ && now + lead >= unsent_from_) {
     summary_.track_to_setpoint_ms.push_back(1e3 * (now - *unsent_track_));
     unsent_track_.reset();
   }

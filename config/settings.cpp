@@ -79,6 +79,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"lateral_range", &HorizonSettings::lateral_range, above(0, 1000)},
     {"back_range", &HorizonSettings::back_range, closed(0, 1000)},
     {"acceleration_share", &HorizonSettings::acceleration_share, above(0, 1)},
+    {"emergency_share", &HorizonSettings::emergency_share, above(0, 1)},
     {"braking", &HorizonSettings::braking, above(0, 1000)},
     {"margin", &HorizonSettings::margin, closed(0, 100)},
     {"sigma_factor", &HorizonSettings::sigma_factor, closed(0, 100)},
@@ -99,6 +100,7 @@ constexpr Field<CompanionSettings> kCompanion[] = {
     {"setpoint_rate_hz", &CompanionSettings::setpoint_rate_hz, closed(2, 1000)},  // below 2 Hz PX4 leaves OFFBOARD
     {"replan_rate_hz", &CompanionSettings::replan_rate_hz, above(0, 1000)},
     {"planner_latency_ms", &CompanionSettings::planner_latency_ms, closed(0, 10000)},
+    {"commitment", &CompanionSettings::commitment, closed(0, 5)},
     {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},
     {"acceleration_lead", &CompanionSettings::acceleration_lead, closed(0, 10)},
     {"drag", &CompanionSettings::drag, closed(0, 5)},

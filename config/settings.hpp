@@ -15,6 +15,8 @@ struct CompanionSettings {
   double setpoint_rate_hz = 50.0;
   double replan_rate_hz = 10.0;
   double planner_latency_ms = 20.0;  ///< in virtual time: from a plan's start to its use
+  double commitment = 0.2;      ///< from a plan's beginning to its start at the least: the present plan is flown until
+                                ///< then, since the vehicle answers a new acceleration that late
   double setpoint_lead = 0.04;  ///< how far ahead of now the plan is sampled for position and velocity: the transport
   double acceleration_lead = 0.3;  ///< and for the acceleration: the autopilot's attitude loop and rotors too
   double drag = 1.0;         ///< 1/s, deceleration per speed that the feed-forward makes up for; PX4's SITL shows 1.0

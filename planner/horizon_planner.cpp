@@ -18,6 +18,11 @@ constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
 constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
 constexpr double kSeedClearance = 0.2;     // m, that manoeuvres aim for beyond the margin: the vehicle cuts corners
 
+HorizonSettings for_emergencies(HorizonSettings s) {
+  s.acceleration_share = std::max(s.acceleration_share, s.emergency_share);
+  return s;
+}
+
 OptimizerSettings sized(OptimizerSettings o, const HorizonSettings& s) {
   o.slaves = s.slaves;
   o.sharing = s.sharing;
@@ -84,43 +89,61 @@ void conclude(const PathRequest& request, double horizon, Plan& plan) {
 HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer)
     : settings_(settings),
       problem_(settings),
+      emergency_(for_emergencies(settings)),
       optimizer_(sized(optimizer, settings), problem_.dimension(), problem_.objectives()) {}
 
 // Straight on, the plan before, and what a pilot would try first.
-void HorizonPlanner::start_from(const PathRequest& request, const TimedPath& previous) {
-  const auto d = static_cast<std::size_t>(problem_.dimension());
+void HorizonPlanner::start_from(const PathProblem& problem, const PathRequest& request, const TimedPath& previous) {
+  const auto d = static_cast<std::size_t>(problem.dimension());
   initial_.assign(d, 0.0);
-  const TimedPath undisturbed = problem_.motion(initial_);
+  const TimedPath undisturbed = problem.motion(initial_);
   const auto add = [&](const TimedPath& path) {
     initial_.resize(initial_.size() + d);
-    problem_.imitate(path, {initial_.data() + initial_.size() - d, d});
+    problem.imitate(path, {initial_.data() + initial_.size() - d, d});
   };
   if (!previous.empty()) add(previous);
   if (!settings_.seeding) return;
   std::vector<double> times;
-  for (int k = 1; k <= settings_.waypoints; ++k) times.push_back(k * problem_.horizon() / settings_.waypoints);
+  for (int k = 1; k <= settings_.waypoints; ++k) times.push_back(k * problem.horizon() / settings_.waypoints);
   for (const TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) add(path);
 }
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                           std::uint64_t number, const Budget& budget, WorkerPool& pool) {
   if (!finite(request)) return {};
-  problem_.prepare(request);
-  start_from(request, previous);
+  const Random random{seed, number};
+  Plan plan = search(problem_, request, previous, random, budget, pool);
+  if (!previous.empty()) keep_previous(request, previous, plan);
+  const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
+  if (!safe && settings_.emergency_share > settings_.acceleration_share) {
+    Plan harder = search(emergency_, request, previous, random, budget, pool);
+    plan.evaluations += harder.evaluations;
+    if (less_harm(harder.verification, plan.verification)) {
+      harder.evaluations = plan.evaluations;
+      harder.emergency = true;
+      plan = std::move(harder);
+    }
+  }
+  conclude(request, problem_.horizon(), plan);
+  return plan;
+}
+
+Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const TimedPath& previous,
+                            const Random& random, const Budget& budget, WorkerPool& pool) {
+  problem.prepare(request);
+  start_from(problem, request, previous);
   Budget affordable = budget;
   affordable.generations = affordable_generations(budget);
   const auto begun = std::chrono::steady_clock::now();
-  const Front& front = optimizer_.run(problem_, initial_, seed, number, affordable, pool);
+  const Front& front = optimizer_.run(problem, initial_, random.seed, random.stream, affordable, pool);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   pace_ = took.count() / optimizer_.report().generations;
-  Plan plan = choose(request, front);
+  Plan plan = choose(problem, request, front);
   plan.evaluations = optimizer_.report().evaluations;
   plan.generations = optimizer_.report().generations;
   plan.schedule = affordable.generations;
   plan.deadline_reached = optimizer_.report().deadline_reached;
   for (const Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
-  if (!previous.empty()) keep_previous(request, previous, plan);
-  conclude(request, problem_.horizon(), plan);
   return plan;
 }
 
@@ -145,15 +168,15 @@ std::vector<Cost> HorizonPlanner::banded(std::span<const Cost> costs) const {
   return result;
 }
 
-Plan HorizonPlanner::choose(const PathRequest& request, const Front& front) const {
+Plan HorizonPlanner::choose(const PathProblem& problem, const PathRequest& request, const Front& front) const {
   const std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
-  const std::vector<int> order = topsis_order(banded(front.costs), problem_.objectives(), weights);
+  const std::vector<int> order = topsis_order(banded(front.costs), problem.objectives(), weights);
   Plan best;
   // True where there is nothing left to look for.
   const auto consider = [&](std::span<const double> x, bool feasible) {
     Plan plan;
-    plan.path = problem_.motion(x);
-    plan.verification = verify_until(plan.path, request, problem_.horizon());
+    plan.path = problem.motion(x);
+    plan.verification = verify_until(plan.path, request, problem.horizon());
     const bool good = feasible && plan.verification.free();
     if (good || best.path.empty() || less_harm(plan.verification, best.verification)) best = std::move(plan);
     return good;
@@ -163,7 +186,7 @@ Plan HorizonPlanner::choose(const PathRequest& request, const Front& front) cons
     if (consider(front.solution(candidate), front.costs[candidate].violation == 0.0)) return best;
   }
   // The optimizer measures how deep and how long, harm is measured in when and how hard: the first ideas count too.
-  const auto d = static_cast<std::size_t>(problem_.dimension());
+  const auto d = static_cast<std::size_t>(problem.dimension());
   for (std::size_t at = 0; at < initial_.size() && !best.verification.free(); at += d) {
     consider(std::span(initial_).subspan(at, d), false);
   }

@@ -28,22 +28,30 @@ class HorizonPlanner {
   /// `number` counts the plans of a flight and names the random stream.
   ///
   /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it
-  /// was verified free in continuous time, apart from the optimizer. Where nothing free was found the path is the
-  /// candidate that stays free the longest, then has the softest contact.
+  /// was verified free in continuous time, apart from the optimizer. Where nothing was found that keeps the margin, the
+  /// search is repeated with more of the vehicle's acceleration (settings.emergency_share), and where that finds
+  /// nothing free either the path is the candidate that stays free the longest, then has the softest contact.
   Plan plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
             const Budget& budget, WorkerPool& pool);
 
   [[nodiscard]] const HorizonSettings& settings() const { return settings_; }
 
  private:
-  void start_from(const PathRequest& request, const TimedPath& previous);
+  /// Names the random numbers of a plan.
+  struct Random {
+    std::uint64_t seed = 1, stream = 0;
+  };
+  Plan search(PathProblem& problem, const PathRequest& request, const TimedPath& previous, const Random& random,
+              const Budget& budget, WorkerPool& pool);
+  void start_from(const PathProblem& problem, const PathRequest& request, const TimedPath& previous);
   [[nodiscard]] int affordable_generations(const Budget& budget) const;
-  Plan choose(const PathRequest& request, const Front& front) const;
+  [[nodiscard]] Plan choose(const PathProblem& problem, const PathRequest& request, const Front& front) const;
   [[nodiscard]] std::vector<Cost> banded(std::span<const Cost> costs) const;
   void keep_previous(const PathRequest& request, const TimedPath& previous, Plan& plan) const;
 
   HorizonSettings settings_;
   PathProblem problem_;
+  PathProblem emergency_;  // the same with a harder acceleration
   Pmomvo optimizer_;
   std::vector<double> initial_;
   double pace_ = 0.0;  // s per generation, of the plan before; 0: not known

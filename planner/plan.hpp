@@ -30,6 +30,7 @@ struct Plan {
   int generations = 0;  ///< generations that were done
   bool deadline_reached = false;
   bool kept_previous = false;                ///< the plan before was kept
+  bool emergency = false;                    ///< more acceleration is used than plans normally may
   std::vector<std::array<double, 2>> front;  ///< the first two objectives of the (first) front
 };
 

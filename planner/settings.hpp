@@ -68,6 +68,7 @@ struct HorizonSettings {
   double lateral_range = 6.0;       ///< how far waypoints may leave the straight line
   double back_range = 2.0;          ///< how far they may fall back behind the start
   double acceleration_share = 0.5;  ///< of the vehicle's limit that plans use; the rest is for tracking them
+  double emergency_share = 0.9;     ///< the same where nothing else keeps the margin
   double braking = 2.0;             ///< deceleration planned towards a stop, m/s²
   double margin = 0.35;             ///< kept from every obstacle on top of the radii, for the tracking error
   double sigma_factor = 2.0;        ///< standard deviations of a track's position that clearance is asked for

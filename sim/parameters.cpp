@@ -30,7 +30,7 @@ Parameters::Parameters(const planner::VehicleLimits& limits, int system_id) {
       {"MPC_LAND_SPEED", real(0.7)},
       {"MPC_XY_CRUISE", real(std::min(5.0, limits.max_speed))},
       {"MPC_XY_VEL_MAX", real(limits.max_speed)},
-      {"MPC_Z_VEL_MAX_DN", real(std::min(1.5, limits.max_climb))},
+      {"MPC_Z_VEL_MAX_DN", real(limits.max_climb)},
       {"MPC_Z_VEL_MAX_UP", real(limits.max_climb)},
       {"NAV_DLL_ACT", integer(0)},
       {"NAV_RCL_ACT", integer(2)},

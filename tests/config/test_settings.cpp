@@ -81,6 +81,10 @@ TEST(LoadSettings, EachOverrideChangesItsKeyAlone) {
       value = "paper";
     } else if (setting.key == "paper.axis") {
       value = "path";
+    } else if (setting.key == "optimizer.operators") {
+      value = "printed";
+    } else if (setting.value == "true" || setting.value == "false") {
+      value = setting.value == "true" ? "false" : "true";
     } else if (setting.value.find('.') == std::string::npos && std::stod(setting.value) >= 2) {
       value = number_text(std::stod(setting.value) + 1);
     } else {
