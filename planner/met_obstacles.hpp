@@ -47,7 +47,7 @@ class MetObstacles {
  private:
   /// A number of steps, and where the vehicle is during all of them.
   struct Group {
-    std::size_t first, last;
+    std::size_t first = 0, last = 0;
     Box where;
   };
   void add(const Track& track, const Clearance& clearance, double step, std::span<const Box> where);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "planner/portable_math.hpp"
 #include "planner/random.hpp"
 #include "planner/settings.hpp"
 
@@ -19,10 +20,9 @@ inline double wormhole_probability(double fraction, const OptimizerSettings& s) 
 /// Travelling distance rate: 1 at the start, 0 at the end. differs: Eq. (20) prints 1 − iter^(1/γ)/n_iter, which stays
 /// near 1 to the end; this is 1 − (iter/n_iter)^(1/γ).
 inline double travelling_distance(double fraction, const OptimizerSettings& s) {
-  if (s.operators == Operators::kPrinted) {
-    return 1.0 - std::pow(fraction * s.iterations, 1.0 / s.exploitation) / s.iterations;
-  }
-  return 1.0 - std::pow(fraction, 1.0 / s.exploitation);
+  const auto root = [&](double x) { return x > 0.0 ? exponential(logarithm(x) / s.exploitation) : 0.0; };
+  if (s.operators == Operators::kPrinted) return 1.0 - root(fraction * s.iterations) / s.iterations;
+  return fraction < 1.0 ? 1.0 - root(fraction) : 0.0;
 }
 
 /// One component moved through a wormhole to the leader's value ± a step, Eq. (18); the result may lie outside the box.

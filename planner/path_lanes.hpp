@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstddef>
 
-#include "planner/arc_tangent.hpp"
 #include "planner/met_obstacles.hpp"
 #include "planner/pareto.hpp"
 #include "planner/path_scene.hpp"
+#include "planner/portable_math.hpp"
 #include "planner/types.hpp"
 
 namespace jink::planner {

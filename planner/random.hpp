@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "planner/portable_math.hpp"
+
 namespace jink::planner {
 
 /// SplitMix64 (Steele, Lea and Flood 2014; constants of Vigna's public-domain splitmix64.c). A bijective mix of a
@@ -58,8 +60,7 @@ class Xoshiro256PlusPlus {
 /// purposes (the three are hashed to 64 bits). O(1) per number, no heap. A value type; one stream is not to be shared
 /// by threads.
 ///
-/// next(), uniform() and below() give the same bits everywhere. normal() calls std::log, whose last bit may differ
-/// between C libraries (not between runs or thread counts on one machine).
+/// The same bits on every machine.
 class RandomStream {
  public:
   explicit constexpr RandomStream(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t substream = 0) noexcept
@@ -110,7 +111,7 @@ class RandomStream {
       v = 2.0 * uniform() - 1.0;
       square = u * u + v * v;
     } while (square >= 1.0 || square == 0.0);
-    const double factor = std::sqrt(-2.0 * std::log(square) / square);
+    const double factor = std::sqrt(-2.0 * logarithm(square) / square);
     spare_ = v * factor;
     has_spare_ = true;
     return u * factor;

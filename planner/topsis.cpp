@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "planner/portable_math.hpp"
+
 namespace jink::planner {
 namespace {
 
@@ -73,9 +75,9 @@ std::vector<double> entropy_weights(std::span<const Cost> costs, int objectives)
     double entropy = 0.0;
     for (const Cost& cost : costs) {
       const double p = (cost.f[k] - c.low) / c.sum;
-      if (p > 0.0) entropy -= p * std::log(p);
+      if (p > 0.0) entropy -= p * logarithm(p);
     }
-    weights[k] = 1.0 - entropy / std::log(static_cast<double>(costs.size()));
+    weights[k] = 1.0 - entropy / logarithm(static_cast<double>(costs.size()));
     total += weights[k];
   }
   for (double& weight : weights) weight = total > 0.0 ? weight / total : 1.0 / objectives;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "planner/arc_tangent.hpp"
 #include "planner/multiversion.hpp"
 #include "planner/obstacle_motion.hpp"
+#include "planner/portable_math.hpp"
 
 namespace jink::planner {
 namespace {

@@ -21,8 +21,9 @@ constexpr int kUsage = 2;  // exit code, as of jink
 
 constexpr const char* kAbout =
     "Measures the planner: time, hypervolume and SLR of the paper's missions beside pagmo2's NSGA-II; warm replanning "
-    "among 20, 200 and 2000 moving obstacles; threads and slaves; the parts by Google Benchmark. Prints tables. What "
-    "is compared runs in turn, and medians are given, since machines are noisy.";
+    "among 20, 200 and 2000 moving obstacles; the optimizer with and without each of its parts; threads and slaves; "
+    "the parts by Google Benchmark. Prints tables. What is compared runs in turn, and medians are given, since "
+    "machines are noisy.";
 
 /// Rows alone: the library's own heading names the machine's load and paths.
 class RowReporter final : public benchmark::ConsoleReporter {
@@ -39,8 +40,8 @@ class RowReporter final : public benchmark::ConsoleReporter {
 void initialise_benchmark(bool quick, std::vector<std::string> flags) {
   flags.insert(flags.begin(), "jink_bench");
   if (quick) flags.insert(flags.begin() + 1, "--benchmark_min_time=0.02");
-  std::vector<char*> argv;
-  for (std::string& flag : flags) argv.push_back(flag.data());
+  std::vector<char*> argv(flags.size());
+  std::transform(flags.begin(), flags.end(), argv.begin(), [](std::string& flag) { return flag.data(); });
   auto argc = static_cast<int>(argv.size());
   benchmark::Initialize(&argc, argv.data());  // takes its own out
   if (argc > 1) throw CLI::ExtrasError({argv[1]});
@@ -57,7 +58,7 @@ void bench_parts() {
 int run(int argc, char** argv) {
   Options options;
   options.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const std::vector<std::string> all{"paper", "quality", "horizon", "scaling", "parts"};
+  const std::vector<std::string> all{"paper", "quality", "horizon", "ablation", "scaling", "parts"};
   std::vector<std::string> sections;
   CLI::App app(kAbout, "jink_bench");
   app.add_flag("--quick", options.quick, "Every table with few samples, in about a minute");
@@ -67,7 +68,7 @@ int run(int argc, char** argv) {
       app.add_option("--replans", options.replans, "Replans in each world, 10000 by default, 300 with --quick")
           ->check(CLI::Range(1, 1000000));
   app.add_option("sections", sections,
-                 "paper (time), quality (hypervolume, SLR), horizon, scaling, parts; all by default")
+                 "paper (time), quality (hypervolume, SLR), horizon, ablation, scaling, parts; all by default")
       ->check(CLI::IsMember(all));
   app.footer("Options that begin with --benchmark_ go to Google Benchmark: --benchmark_filter=REGEX.");
   app.allow_extras();
@@ -91,6 +92,7 @@ int run(int argc, char** argv) {
   if (wanted("paper")) bench_paper(options);
   if (wanted("quality")) bench_quality(options);
   if (wanted("horizon")) bench_horizon(options);
+  if (wanted("ablation")) bench_ablation(options);
   if (wanted("scaling")) bench_scaling(options);
   if (wanted("parts")) bench_parts();
   return 0;

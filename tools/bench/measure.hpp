@@ -54,9 +54,10 @@ void print_title(const std::string& title, const std::string& what);
 void print_note(const std::string& note);
 
 // The sections; each prints its tables.
-void bench_paper(const Options& options);    ///< time of paper missions, beside pagmo2
-void bench_quality(const Options& options);  ///< hypervolume and SLR, beside pagmo2
-void bench_horizon(const Options& options);  ///< warm replanning in moving worlds
-void bench_scaling(const Options& options);  ///< threads and slaves
+void bench_paper(const Options& options);     ///< time of paper missions, beside pagmo2
+void bench_quality(const Options& options);   ///< hypervolume and SLR, beside pagmo2
+void bench_horizon(const Options& options);   ///< warm replanning in moving worlds
+void bench_ablation(const Options& options);  ///< what each part of the optimizer is worth
+void bench_scaling(const Options& options);   ///< threads and slaves
 
 }  // namespace jink::bench

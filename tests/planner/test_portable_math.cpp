@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planner/arc_tangent.hpp"
+#include "planner/portable_math.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -38,6 +39,28 @@ TEST(ArcTangent, MatchesTheLibraryInEveryDirectionAndSize) {
 
 TEST(ArcTangent, IsAccurateForTinyAngles) {
   for (double y = 1e-300; y < 1e-3; y *= 7.0) EXPECT_DOUBLE_EQ(arc_tangent2(y, 1.0), std::atan2(y, 1.0));
+}
+
+TEST(Logarithm, MatchesTheLibrary) {
+  EXPECT_EQ(logarithm(1.0), 0.0);
+  RandomStream random(2);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = std::exp(random.uniform(-700.0, 700.0));
+    ASSERT_NEAR(logarithm(x), std::log(x), 4e-16 * std::max(1.0, std::abs(std::log(x)))) << x;
+    const double near_one = random.uniform(0.5, 2.0);
+    ASSERT_NEAR(logarithm(near_one), std::log(near_one), 4e-16) << near_one;
+  }
+}
+
+TEST(Exponential, MatchesTheLibrary) {
+  EXPECT_EQ(exponential(0.0), 1.0);
+  RandomStream random(3);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = random.uniform(-700.0, 700.0);
+    ASSERT_NEAR(exponential(x) / std::exp(x), 1.0, 2e-16 * std::max(4.0, std::abs(x))) << x;
+    const double small = random.uniform(-1.0, 1.0);
+    ASSERT_NEAR(exponential(small), std::exp(small), 1e-15) << small;
+  }
 }
 
 }  // namespace

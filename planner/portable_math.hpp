@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The angle of a direction without a branch and without the C library, whose last bit differs between machines.
+// Functions of the C library whose last bit differs between machines (and, in one library, between processors), in
+// plain IEEE arithmetic: the same bits everywhere.
 #pragma once
 
-#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -33,6 +34,33 @@ inline double arc_tangent2(double y, double x) {
   const double octant = t + t * (z * p / q) + (upper ? 0.25 * std::numbers::pi : 0.0);
   const double quadrant = y > a ? 0.5 * std::numbers::pi - octant : octant;
   return x < 0.0 ? std::numbers::pi - quadrant : quadrant;
+}
+
+/// Natural logarithm of a finite x > 0, within 2 units in the last place of max(1, |result|): the series of atanh about
+/// the nearest power of two.
+inline double logarithm(double x) {
+  assert(x > 0.0);
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);  // [0.5, 1)
+  if (mantissa < 0.5 * std::numbers::sqrt2) {
+    mantissa *= 2.0;
+    --exponent;
+  }
+  const double t = (mantissa - 1.0) / (mantissa + 1.0);  // |t| < 0.172
+  const double z = t * t;
+  double series = 0.0;
+  for (int k = 25; k >= 3; k -= 2) series = (series + 1.0 / k) * z;
+  return exponent * std::numbers::ln2 + 2.0 * (t + t * series);
+}
+
+/// e^x for |x| <= 700, within 4e-16 of the result for small x: Taylor's series about the nearest multiple of ln 2.
+inline double exponential(double x) {
+  assert(std::abs(x) <= 700.0);
+  const double power = std::floor(x / std::numbers::ln2 + 0.5);
+  const double r = x - power * std::numbers::ln2;  // |r| < 0.35
+  double series = 1.0;
+  for (int k = 16; k >= 1; --k) series = 1.0 + series * (r / k);
+  return std::ldexp(series, static_cast<int>(power));
 }
 
 }  // namespace jink::planner
