@@ -34,25 +34,23 @@ void Momvo::reset(const Problem& problem, RandomStream random) {
   order_ = {};
   moves_ = {};
   std::fill(kinds_.begin(), kinds_.end(), Move::kWide);
-  const auto lower = problem.lower();
-  const auto upper = problem.upper();
+  lower_ = problem.lower();
+  upper_ = problem.upper();
   for (std::size_t i = 0; i < universes_; ++i) {
     const auto x = universe(i);
     const bool opposite = settings_.opposition && i % 2 == 1;
     for (std::size_t j = 0; j < x.size(); ++j) {
-      x[j] = opposite ? lower[j] + upper[j] - universe(i - 1)[j] : random_.uniform(lower[j], upper[j]);
+      x[j] = opposite ? lower_[j] + upper_[j] - universe(i - 1)[j] : random_.uniform(lower_[j], upper_[j]);
     }
   }
 }
 
 void Momvo::place(std::size_t slot, std::span<const double> x) {
-  const auto lower = problem_->lower();
-  const auto upper = problem_->upper();
   const auto to = universe(slot % universes_);
-  for (std::size_t j = 0; j < to.size(); ++j) to[j] = std::clamp(x[j], lower[j], upper[j]);
+  for (std::size_t j = 0; j < to.size(); ++j) to[j] = std::clamp(x[j], lower_[j], upper_[j]);
 }
 
-void Momvo::iterate(double fraction) {
+void Momvo::iterate(const Schedule& schedule) {
   assert(problem_ != nullptr);
   problem_->evaluate(x_, costs_);
   for (std::size_t i = 0; i < universes_; ++i) {
@@ -63,23 +61,21 @@ void Momvo::iterate(double fraction) {
   archive_.settle(random_);
   order_ = ranking_.order(costs_, objectives_);
   if (settings_.operators == Operators::kAdaptive) moves_.adapt();
-  move(fraction);
+  move(schedule);
 }
 
-void Momvo::move(double fraction) {
-  const double wep = wormhole_probability(fraction, settings_);
-  const double tdr = travelling_distance(fraction, settings_);
+void Momvo::move(const Schedule& schedule) {
   std::copy(x_.begin(), x_.end(), previous_.begin());
   RandomStream random = random_;  // a local one stays in registers
   for (std::size_t position = 0; position < universes_; ++position) {
     const auto i = static_cast<std::size_t>(order_[position]);
     kinds_[i] = settings_.operators == Operators::kAdaptive ? moves_.draw(random) : Move::kWide;
     if (kinds_[i] == Move::kNarrow) {
-      move_narrowly(i, tdr, random);
+      move_narrowly(i, schedule.tdr, random);
     } else {
       // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
       const double last = universes_ > 1 ? static_cast<double>(universes_ - 1) : 1.0;
-      move_widely(i, static_cast<double>(position) / last, wep, tdr, random);
+      move_widely(i, static_cast<double>(position) / last, schedule, random);
     }
   }
   random_ = random;
@@ -87,25 +83,22 @@ void Momvo::move(double fraction) {
 
 // White holes and wormholes. Every draw is made, used or not, and the outcome selected: cheaper than branches that
 // nobody can predict.
-void Momvo::move_widely(std::size_t i, double inflation, double wep, double tdr, RandomStream& random) {
-  const double* lower = problem_->lower().data();
-  const double* upper = problem_->upper().data();
+void Momvo::move_widely(std::size_t i, double inflation, const Schedule& schedule, RandomStream& random) {
   const auto d = static_cast<std::size_t>(dimension_);
   double* x = x_.data() + i * d;
   const double* leader = archive_.x(archive_.draw(random)).data();
   for (std::size_t j = 0; j < d; ++j) {
     const auto giver = static_cast<std::size_t>(order_[white_hole(universes_, random)]);
-    const double through_wormhole = wormhole(leader[j], tdr, lower[j], upper[j], settings_.operators, random);
+    const double through_wormhole =
+        wormhole(leader[j], schedule.tdr, lower_[j], upper_[j], settings_.operators, random);
     const auto [inflate, worm] = random.uniform_pair();
     const double kept = inflate < inflation ? previous_[giver * d + j] : x[j];
-    x[j] = std::clamp(worm < wep ? through_wormhole : kept, lower[j], upper[j]);
+    x[j] = std::clamp(worm < schedule.wep ? through_wormhole : kept, lower_[j], upper_[j]);
   }
 }
 
 // A leader, moved in a few variables by steps that are mostly small.
 void Momvo::move_narrowly(std::size_t i, double tdr, RandomStream& random) {
-  const double* lower = problem_->lower().data();
-  const double* upper = problem_->upper().data();
   const auto d = static_cast<std::size_t>(dimension_);
   double* x = x_.data() + i * d;
   const auto [focused, which] = random.uniform_pair();
@@ -115,8 +108,8 @@ void Momvo::move_narrowly(std::size_t i, double tdr, RandomStream& random) {
   const double* leader = archive_.x(member).data();
   const double share = kNarrowVariables / static_cast<double>(d);
   for (std::size_t j = 0; j < d; ++j) {
-    const double moved = narrow_wormhole(leader[j], tdr, lower[j], upper[j], random);
-    x[j] = random.uniform() < share ? std::clamp(moved, lower[j], upper[j]) : leader[j];
+    const double moved = narrow_wormhole(leader[j], tdr, lower_[j], upper_[j], random);
+    x[j] = random.uniform() < share ? std::clamp(moved, lower_[j], upper_[j]) : leader[j];
   }
 }
 

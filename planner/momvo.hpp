@@ -28,9 +28,10 @@ class alignas(64) Momvo {
   void place(std::size_t slot, std::span<const double> x);
 
   /// One iteration: evaluate, update the archive, rank, then move every universe through black and white holes and
-  /// wormholes, back into the box where a move left it. `fraction` in (0, 1] of the budget is used when it ends: it
-  /// sets WEP and TDR.
-  void iterate(double fraction);
+  /// wormholes, back into the box where a move left it.
+  void iterate(const Schedule& schedule);
+  /// The same where `fraction` in (0, 1] of the budget is used when it ends.
+  void iterate(double fraction) { iterate(schedule_at(fraction, settings_)); }
 
   /// Draws the representative that this population sends to the master, by roulette from its own archive. Precondition:
   /// at least one iteration.
@@ -47,8 +48,8 @@ class alignas(64) Momvo {
   std::span<double> universe(std::size_t i) {
     return {x_.data() + i * static_cast<std::size_t>(dimension_), static_cast<std::size_t>(dimension_)};
   }
-  void move(double fraction);
-  void move_widely(std::size_t i, double inflation, double wep, double tdr, RandomStream& random);
+  void move(const Schedule& schedule);
+  void move_widely(std::size_t i, double inflation, const Schedule& schedule, RandomStream& random);
   void move_narrowly(std::size_t i, double tdr, RandomStream& random);
 
   std::size_t universes_;
@@ -56,6 +57,7 @@ class alignas(64) Momvo {
   int objectives_;
   OptimizerSettings settings_;
   const Problem* problem_ = nullptr;
+  std::span<const double> lower_, upper_;  // the problem's box
   RandomStream random_{0};
   Archive archive_;
   Ranking ranking_;

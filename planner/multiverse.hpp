@@ -25,6 +25,17 @@ inline double travelling_distance(double fraction, const OptimizerSettings& s) {
   return fraction < 1.0 ? 1.0 - root(fraction) : 0.0;
 }
 
+/// What the schedule says for one iteration.
+struct Schedule {
+  double wep = 0.0;  ///< wormhole existence probability
+  double tdr = 0.0;  ///< travelling distance rate
+};
+
+/// The schedule where `fraction` in (0, 1] of the budget is used when the iteration ends.
+inline Schedule schedule_at(double fraction, const OptimizerSettings& s) {
+  return {wormhole_probability(fraction, s), travelling_distance(fraction, s)};
+}
+
 /// One component moved through a wormhole to the leader's value ± a step, Eq. (18); the result may lie outside the box.
 /// - kCorrected, kAdaptive: leader ± tdr · (upper − lower) · r, + for half of the draws: drawn as one number in [-1,
 /// 1).

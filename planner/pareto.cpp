@@ -13,17 +13,6 @@
 #include "planner/multiversion.hpp"
 
 namespace jink::planner {
-bool dominates(const Cost& a, const Cost& b, int objectives) {
-  if (a.violation != b.violation) return a.violation < b.violation;
-  bool better = false;
-  for (int k = 0; k < objectives; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (a.f[i] > b.f[i]) return false;
-    better = better || a.f[i] < b.f[i];
-  }
-  return better;
-}
-
 namespace {
 
 // Few elements are the rule here: a slave has a handful of universes. The order is total, so that the algorithm has no
@@ -107,17 +96,18 @@ void sort_lexicographically(std::span<const Cost> costs, std::span<int> sorted) 
 // In lexicographic order nobody is dominated by a later one, and with two objectives, of the members of a front, the
 // last one found dominates if any does.
 void Ranking::assign_fronts(std::span<const Cost> costs, int objectives) {
-  const auto cost = [&](int i) -> const Cost& { return costs[static_cast<std::size_t>(i)]; };
   sort_lexicographically(costs, sorted_);
   last_.clear();
   for (const int i : sorted_) {
+    const Cost& cost = costs[static_cast<std::size_t>(i)];
     const auto dominated_in = [&](int member) {
       for (; member >= 0; member = previous_[static_cast<std::size_t>(member)]) {
-        if (dominates(cost(member), cost(i), objectives)) return true;
+        if (dominates(costs[static_cast<std::size_t>(member)], cost, objectives)) return true;
         if (objectives <= 2) break;
       }
       return false;
     };
+    // Whom a front dominates, the fronts before it dominate: the first that does not is the place.
     std::size_t level = 0;
     while (level < last_.size() && dominated_in(last_[level])) ++level;
     if (level == last_.size()) last_.push_back(-1);

@@ -28,7 +28,16 @@ inline void make_rankable(Cost& cost) {
 
 /// True where a constrained-dominates b: a smaller violation wins, then Pareto. differs: [Paper] Eq. (17) uses static
 /// penalties instead, which leave `violation` at 0. Precondition: finite costs (make_rankable).
-bool dominates(const Cost& a, const Cost& b, int objectives);
+inline bool dominates(const Cost& a, const Cost& b, int objectives) {
+  if (a.violation != b.violation) return a.violation < b.violation;
+  bool worse = false;
+  bool better = false;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(objectives); ++k) {
+    worse |= a.f[k] > b.f[k];
+    better |= a.f[k] < b.f[k];
+  }
+  return better && !worse;
+}
 
 /// Orders solutions from best to worst by non-dominated front, then by crowding distance (wider first), then by index.
 /// Owns its workspace: no allocation once constructed for `capacity` solutions. Efficient non-dominated sorting with

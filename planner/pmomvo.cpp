@@ -55,10 +55,11 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
   while (done < std::min(budget.generations, budget.stop_after) && !report_.deadline_reached) {
     while (cycle_end(cycle) <= done) ++cycle;
     const int stop = budget.has_deadline() ? done + 1 : std::min(cycle_end(cycle), budget.stop_after);
+    extend_schedule(budget.generations, stop);
     pool.run(slaves, [&](std::uint32_t j) {
       if (done == 0) begin(j, problem, initial, RandomStream(seed, stream, j));
       for (int iteration = done; iteration < stop; ++iteration) {
-        slaves_[j].iterate(static_cast<double>(iteration + 1) / budget.generations);
+        slaves_[j].iterate(schedule_[static_cast<std::size_t>(iteration)]);
       }
     });
     done = stop;
@@ -69,6 +70,16 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
   report_.evaluations = static_cast<std::int64_t>(done) * settings_.population;
   merge();
   return front_;
+}
+
+// The schedule of a run of so many generations, as far as generation `stop`: the same for all slaves, and mostly the
+// same as in the run before.
+void Pmomvo::extend_schedule(int generations, int stop) {
+  if (scheduled_ != generations) schedule_.clear();
+  scheduled_ = generations;
+  for (auto i = static_cast<int>(schedule_.size()) + 1; i <= stop; ++i) {
+    schedule_.push_back(schedule_at(static_cast<double>(i) / generations, settings_));
+  }
 }
 
 // A slave starts over, with every m-th of the initial solutions from its own number on.

@@ -31,6 +31,7 @@ class Pmomvo final : public Optimizer {
 
  private:
   void begin(std::uint32_t j, const Problem& problem, std::span<const double> initial, const RandomStream& random);
+  void extend_schedule(int generations, int stop);
   void share();
   void merge();
 
@@ -38,6 +39,8 @@ class Pmomvo final : public Optimizer {
   int dimension_;
   int objectives_;
   std::vector<Momvo> slaves_;
+  std::vector<Schedule> schedule_;  // of the first generations of a run of `scheduled_`
+  int scheduled_ = 0;
   std::vector<double> shared_;  // representatives that the master sends back, one after the other
   std::vector<Cost> shared_costs_;
   Front front_;

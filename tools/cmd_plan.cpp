@@ -10,7 +10,7 @@
 #include "planner/horizon_planner.hpp"
 #include "planner/indicators.hpp"
 #include "planner/paper_planner.hpp"
-#include "sim/world.hpp"
+#include "sim/known_world.hpp"
 #include "tools/command_line.hpp"
 #include "tools/summaries.hpp"
 
@@ -18,9 +18,6 @@ namespace jink::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// In `plan` the tracks are taken as exact, so what is left to keep is the verifier's own accuracy and a hand's breadth.
-constexpr double kOpenLoopMargin = 0.05;  // m
 
 struct PlanOptions {
   CommonOptions common;
@@ -68,41 +65,26 @@ void apply(const PlanOptions& options, Knobs k) {
   }
 }
 
-/// The volume that a plan may use: the scenario's world, or everything above the lowest of ground, start and target.
-planner::Box volume_of(const config::Scenario& scenario) {
-  if (scenario.world) return *scenario.world;
-  planner::Box box;
-  box.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
-  return box;
-}
-
 planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& scenario,
-                            const config::Settings& settings, const std::vector<planner::Track>& tracks,
-                            planner::WorkerPool& pool, const Printer& printer) {
+                            const config::Settings& settings, planner::WorkerPool& pool, const Printer& printer) {
+  const sim::KnownWorld world(scenario);
   const auto deadline =
       options.deadline_ms > 0.0
           ? std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                    std::chrono::duration<double, std::milli>(options.deadline_ms))
           : planner::Budget::Time::max();
   if (options.mode == "paper") {
-    const planner::PaperRequest request{scenario.start, scenario.target,    volume_of(scenario), scenario.vehicle,
-                                        tracks,         settings.optimizer, settings.paper,      options.common.seed,
-                                        deadline};
+    const planner::PaperRequest request{scenario.start,   scenario.target,     world.volume,
+                                        scenario.vehicle, world.tracks,        settings.optimizer,
+                                        settings.paper,   options.common.seed, deadline};
     if (planner::effective_axis(request) != settings.paper.axis) {
       printer.line("note: the mission is steep in world X, so the waypoints are placed along the path's own axis");
     }
     return planner::plan_paper(request, pool);
   }
   planner::HorizonPlanner planner(planner::open_loop_settings(settings.horizon), settings.optimizer);
-  planner::OpenLoopRequest request;
-  request.path.position = scenario.start;
-  request.path.target = scenario.target;
-  request.path.volume = volume_of(scenario);
-  request.path.vehicle = scenario.vehicle;
-  request.path.tracks = tracks;
-  request.path.margin = kOpenLoopMargin;
-  request.time_limit = scenario.time_limit;
-  return planner::plan_open_loop(planner, request, options.common.seed, {settings.horizon.generations, deadline}, pool);
+  return planner::plan_open_loop(planner, world.open_loop, options.common.seed,
+                                 {settings.horizon.generations, deadline}, pool);
 }
 
 std::string outcome_of(const planner::Plan& plan) {
@@ -125,12 +107,9 @@ int run(PlanOptions options) {
   const Knobs k = knobs(settings, paper);
   apply(options, k);
 
-  const sim::World world(scenario);
-  std::vector<planner::Track> tracks;
-  for (int i = 0; i < world.obstacle_count(); ++i) tracks.push_back(world.exact_track(i, 0.0));
   planner::WorkerPool pool(options.common.thread_count());
   const auto begun = std::chrono::steady_clock::now();
-  const planner::Plan plan = plan_scenario(options, scenario, settings, tracks, pool, printer);
+  const planner::Plan plan = plan_scenario(options, scenario, settings, pool, printer);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 
   const std::string outcome = outcome_of(plan);

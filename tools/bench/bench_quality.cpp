@@ -112,9 +112,10 @@ struct Outcomes {
 };
 
 void print_slr(const Options& options, planner::WorkerPool& pool) {
-  print_title("paper missions: SLR",
+  print_title("SLR, paper mode and horizon mode",
               fmt::format("{} seeds each; free: the path was verified free in continuous time.", options.seeds));
-  Table table({"mission", "PMOMVO: mean", "std", "most", "free", "NSGA-II: mean", "std", "most", "free"});
+  Table table({"mission", "PMOMVO: mean", "std", "most", "free", "NSGA-II: mean", "std", "most", "free",
+               "horizon mode: mean", "std", "most", "free"});
   for (int number = 1; number <= 5; ++number) {
     const std::string name = fmt::format("table2-{}", number);
     const Mission mission(name);
@@ -122,13 +123,16 @@ void print_slr(const Options& options, planner::WorkerPool& pool) {
     PagmoNsga2 pagmo(settings.population * settings.iterations);
     Outcomes ours;
     Outcomes theirs;
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      const planner::PaperRequest request = mission.request(static_cast<std::uint64_t>(seed));
+    Outcomes horizon;
+    planner::HorizonPlanner planner(planner::open_loop_settings({}));
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(options.seeds); ++seed) {
+      const planner::PaperRequest request = mission.request(seed);
       ours.add(mission, plan_paper(request, pool));
       theirs.add(mission, plan_paper(request, pagmo, pool));
+      horizon.add(mission, plan_open_loop(planner, mission.open_loop(), seed, {planner.settings().generations}, pool));
     }
     std::vector<std::string> cells{name};
-    for (const Outcomes& outcomes : {ours, theirs}) {
+    for (const Outcomes& outcomes : {ours, theirs, horizon}) {
       cells.push_back(fmt::format("{:.6f}", mean(outcomes.slr)));
       cells.push_back(fmt::format("{:.6f}", deviation(outcomes.slr)));
       cells.push_back(fmt::format("{:.6f}", quantile(outcomes.slr, 1.0)));

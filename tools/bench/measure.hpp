@@ -58,6 +58,7 @@ void bench_paper(const Options& options);     ///< time of paper missions, besid
 void bench_quality(const Options& options);   ///< hypervolume and SLR, beside pagmo2
 void bench_horizon(const Options& options);   ///< warm replanning in moving worlds
 void bench_ablation(const Options& options);  ///< what each part of the optimizer is worth
+void bench_worlds(const Options& options);    ///< plans and flights in the families of worlds
 void bench_scaling(const Options& options);   ///< threads and slaves
 
 }  // namespace jink::bench

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/missions.hpp"
 
-#include <algorithm>
-
-#include "config/scenario.hpp"
 #include "config/settings.hpp"
 #include "planner/indicators.hpp"
 #include "planner/pmomvo.hpp"
-#include "sim/world.hpp"
 
 namespace jink::bench {
 namespace {
@@ -31,26 +27,22 @@ class Recorder final : public planner::Optimizer {
 
 }  // namespace
 
-Mission::Mission(const std::string& name) {
-  const sim::World world(config::load_scenario(config::config_folder() / "scenarios" / (name + ".yaml")));
-  const config::Scenario& scenario = world.scenario();
-  for (int i = 0; i < world.obstacle_count(); ++i) tracks_.push_back(world.exact_track(i, 0.0));
-  request_.start = scenario.start;
-  request_.target = scenario.target;
-  request_.volume = world.volume();
-  if (!scenario.world) request_.volume.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
-  request_.vehicle = scenario.vehicle;
-  request_.tracks = tracks_;
-}
+Mission::Mission(const std::string& name)
+    : scenario_(config::load_scenario(config::config_folder() / "scenarios" / (name + ".yaml"))), world_(scenario_) {}
 
 planner::PaperRequest Mission::request(std::uint64_t seed) const {
-  planner::PaperRequest request = request_;
+  planner::PaperRequest request;
+  request.start = scenario_.start;
+  request.target = scenario_.target;
+  request.volume = world_.volume;
+  request.vehicle = scenario_.vehicle;
+  request.tracks = world_.tracks;
   request.seed = seed;
   return request;
 }
 
 double Mission::slr(const planner::Plan& plan) const {
-  return planner::straight_line_rate(planner::path_length(plan.path), (request_.target - request_.start).norm());
+  return planner::straight_line_rate(planner::path_length(plan.path), (scenario_.target - scenario_.start).norm());
 }
 
 std::vector<planner::WaypointProblem> record_steps(const Mission& mission, std::uint64_t seed,

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "config/scenario.hpp"
 #include "planner/paper_planner.hpp"
-#include "planner/types.hpp"
 #include "planner/waypoint_problem.hpp"
 #include "planner/worker_pool.hpp"
+#include "sim/known_world.hpp"
 
 namespace jink::bench {
 
@@ -23,12 +24,14 @@ class Mission {
   Mission& operator=(const Mission&) = delete;
 
   [[nodiscard]] planner::PaperRequest request(std::uint64_t seed) const;
+  /// The same mission for horizon mode.
+  [[nodiscard]] const planner::OpenLoopRequest& open_loop() const { return world_.open_loop; }
   /// SLR of a plan of this mission.
   [[nodiscard]] double slr(const planner::Plan& plan) const;
 
  private:
-  planner::PaperRequest request_;
-  std::vector<planner::Track> tracks_;
+  config::Scenario scenario_;
+  sim::KnownWorld world_;
 };
 
 /// The problems of all steps of the mission that PMOMVO plans with this seed, in order.

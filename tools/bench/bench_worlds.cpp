@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the planner reaches in the families of worlds whose straight line is blocked, open loop and flown in virtual
+// time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "planner/horizon_planner.hpp"
+#include "planner/indicators.hpp"
+#include "sim/closed_loop.hpp"
+#include "sim/known_world.hpp"
+#include "sim/world_families.hpp"
+#include "tools/bench/measure.hpp"
+
+namespace jink::bench {
+namespace {
+
+/// Results of one family.
+struct Tally {
+  int reached = 0, collided = 0;
+  std::vector<double> slr, time;  ///< of those reached; time in units of straight flight at cruise speed
+  double min_clearance = planner::kInfinity;
+
+  void add(const config::Scenario& scenario, bool arrived, double length, double duration, double clearance) {
+    min_clearance = std::min(min_clearance, clearance);
+    if (!arrived) return;
+    ++reached;
+    const double straight = (scenario.target - scenario.start).norm();
+    slr.push_back(planner::straight_line_rate(length, straight));
+    time.push_back(duration * scenario.vehicle.cruise_speed / straight);
+  }
+  [[nodiscard]] std::vector<std::string> cells() const {
+    if (slr.empty()) return {"-", "-", fmt::format("{:.2f}", min_clearance)};
+    return {fmt::format("{:.3f}", mean(slr)), fmt::format("{:.2f}", mean(time)), fmt::format("{:.2f}", min_clearance)};
+  }
+};
+
+Tally plan_family(std::string_view family, int seeds, planner::WorkerPool& pool) {
+  planner::HorizonPlanner planner(planner::open_loop_settings({}));
+  Tally tally;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+    const config::Scenario scenario = sim::make_world(family, seed);
+    const sim::KnownWorld world(scenario);
+    const planner::Plan plan = plan_open_loop(planner, world.open_loop, seed, {planner.settings().generations}, pool);
+    tally.add(scenario, plan.status == planner::PlanStatus::kReaches, planner::path_length(plan.path),
+              plan.path.back().t, plan.verification.min_clearance);
+  }
+  return tally;
+}
+
+Tally fly_family(std::string_view family, int seeds, int threads) {
+  Tally tally;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+    const config::Scenario scenario = sim::make_world(family, seed);
+    sim::ClosedLoopOptions options;
+    options.seed = seed;
+    options.threads = threads;
+    const sim::ClosedLoopResult result = sim::fly_closed_loop(scenario, {}, options);
+    if (result.flight.outcome == bridge::Outcome::kCollision) ++tally.collided;
+    tally.add(scenario, result.flight.outcome == bridge::Outcome::kReached, result.flight.path_length,
+              result.flight.flight_time, result.min_clearance);
+  }
+  return tally;
+}
+
+}  // namespace
+
+void bench_worlds(const Options& options) {
+  const int flights = options.quick ? 1 : options.seeds;
+  print_title(
+      "worlds whose straight line is blocked",
+      fmt::format("{} seeds of each family planned open loop, as `jink plan` (movers that turn are extrapolated "
+                  "from t = 0), {} flown closed loop, as `jink replay`.\ntime: of straight flight at cruise "
+                  "speed, 1 = as fast; means over those reached. clearance: the smallest of all, m.",
+                  options.seeds, flights));
+  Table table({"family", "planned", "SLR", "time", "clearance", "flown", "collided", "SLR", "time", "clearance"});
+  planner::WorkerPool pool(options.cores);
+  for (const std::string_view family : sim::world_families()) {
+    const Tally planned = plan_family(family, options.seeds, pool);
+    const Tally flown = fly_family(family, flights, options.cores);
+    std::vector<std::string> row{std::string(family), fmt::format("{}", planned.reached)};
+    for (std::string& cell : planned.cells()) row.push_back(std::move(cell));
+    row.push_back(fmt::format("{}", flown.reached));
+    row.push_back(fmt::format("{}", flown.collided));
+    for (std::string& cell : flown.cells()) row.push_back(std::move(cell));
+    table.row(std::move(row));
+  }
+  table.print();
+}
+
+}  // namespace jink::bench
