@@ -57,20 +57,4 @@ class HorizonPlanner {
   double pace_ = 0.0;  // s per generation, of the plan before; 0: not known
 };
 
-/// The settings for planning open loop: there the shortest path is asked for, so lost time and deviation from
-/// undisturbed flight only decide between paths of nearly equal length, and nothing longer is chosen for being
-/// smoother.
-HorizonSettings open_loop_settings(HorizonSettings settings);
-
-struct OpenLoopRequest {
-  PathRequest path;         ///< from rest at the start; tracks valid at t = 0
-  double time_limit = 0.0;  ///< the path is cut here
-  double commit = 0.5;      ///< how much of each plan is kept before planning on
-};
-
-/// The whole path at once, for `jink plan`: one plan after the other along the path itself, the obstacles extrapolated
-/// from t = 0. The finished path is verified: kReaches only where all of it is free and it ends at the target.
-Plan plan_open_loop(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed, Budget budget,
-                    WorkerPool& pool);
-
 }  // namespace jink::planner

@@ -7,12 +7,15 @@
 #include <cmath>
 
 #include "planner/obstacle_motion.hpp"
+#include "planner/path_scene.hpp"
 
 namespace jink::planner {
 namespace {
 
 constexpr std::size_t kEncounters = 3;  // looked at, the first ones
 constexpr double kOnTime = 1.2;         // s, about an encounter, in which a displacement is held in full
+constexpr double kStopBraking = 2.0;    // m/s², of a gentle stop
+constexpr double kStopStep = 0.1;       // s
 constexpr double kReturn = 1.0;         // s, in which it fades before and after
 
 /// Where undisturbed flight comes too close to an obstacle.
@@ -90,6 +93,23 @@ TimedPath warped(const TimedPath& undisturbed, std::span<const double> times, co
   return path;
 }
 
+/// Undisturbed flight as far as `distance` from its start, and a gentle stop there.
+TimedPath stopped_short(const TimedPath& undisturbed, std::span<const double> times, double distance,
+                        const Vec3& heading) {
+  TimedPath path;
+  double travelled = 0.0;
+  double t = 0.0;
+  for (const double time : times) {
+    for (; t < time - 0.5 * kStopStep; t += kStopStep) {
+      const double left = std::max(0.0, distance - travelled);
+      const double speed = sample(undisturbed, t + kStopStep).velocity.norm();
+      travelled += kStopStep * std::min({speed, std::sqrt(2.0 * kStopBraking * left), left / kCatchUp});
+    }
+    path.push_back({time, undisturbed.front().position + travelled * heading, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
 }  // namespace
 
 std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,
@@ -101,6 +121,9 @@ std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& u
     for (const Vec3& displacement : ways_past(e, frame.axis)) {
       paths.push_back(displaced(undisturbed, times, e.t, displacement, frame.axis));
     }
+    const Vec3 centre = sample(undisturbed, e.t).position - e.apart;
+    const double before = (centre - request.position).dot(frame.axis) - e.wanted;
+    paths.push_back(stopped_short(undisturbed, times, std::max(0.0, before), frame.axis));
   }
   for (const double rate : {0.9, 0.8, 0.65, 0.4, 1.3}) {
     paths.push_back(warped(undisturbed, times, [&](double t) { return rate * t; }));

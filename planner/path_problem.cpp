@@ -201,21 +201,25 @@ TimedPath PathProblem::motion(std::span<const double> x) const {
 
 // Straight on to the target and to rest there; a path that has settled at the target already ends where it arrived.
 void PathProblem::fly_to_target(TimedPath& path, TimedPoint flight) const {
-  const auto away = [&](const TimedPoint& point) { return (point.position - request_.target).norm() > kArrival; };
-  for (double tail = 0.0; away(path.back()) && tail < kLongestTail; tail += settings_.step) {
+  const double stoppable = 1.0 / scene_.follower.inverse_change;  // speed that one step takes away
+  const auto arrived = [&](std::size_t i) {
+    return (path[i].position - request_.target).norm() <= kArrival && path[i - 1].velocity.norm() <= stoppable;
+  };
+  for (double tail = 0.0; !arrived(path.size() - 1) && tail < kLongestTail; tail += settings_.step) {
     const Vec3 way = request_.target - flight.position;
     const double distance = way.norm();
     const double speed =
         std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
-    const Vec3 wish = way * (speed / distance);
+    const Vec3 wish = distance > 0.0 ? Vec3(way * (speed / distance)) : Vec3::Zero();
     Vec3& p = flight.position;
     Vec3& v = flight.velocity;
     scene_.follower.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wish.x(), wish.y(), wish.z());
     path.back().acceleration = (v - path.back().velocity) / settings_.step;
     path.push_back({path.back().t + settings_.step, p, v, Vec3::Zero()});
   }
-  if (away(path.back())) return;
-  while (path.size() > 2 && !away(path[path.size() - 2])) path.pop_back();
+  if (!arrived(path.size() - 1)) return;
+  while (path.size() > 2 && arrived(path.size() - 2)) path.pop_back();
+  path[path.size() - 2].acceleration = -path[path.size() - 2].velocity / settings_.step;
   path.back().position = request_.target;
   path.back().velocity.setZero();
   path.back().acceleration.setZero();

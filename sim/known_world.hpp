@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/scenario.hpp"
-#include "planner/horizon_planner.hpp"
+#include "planner/open_loop.hpp"
 
 namespace jink::sim {
 

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "config/scenario.hpp"
-#include "planner/horizon_planner.hpp"
 #include "planner/indicators.hpp"
+#include "planner/open_loop.hpp"
 #include "planner/paper_planner.hpp"
 #include "sim/known_world.hpp"
 #include "tools/command_line.hpp"
@@ -82,8 +82,7 @@ planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& 
     }
     return planner::plan_paper(request, pool);
   }
-  planner::HorizonPlanner planner(planner::open_loop_settings(settings.horizon), settings.optimizer);
-  return planner::plan_open_loop(planner, world.open_loop, options.common.seed,
+  return planner::plan_open_loop(settings.horizon, settings.optimizer, world.open_loop, options.common.seed,
                                  {settings.horizon.generations, deadline}, pool);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planner/obstacle_motion.hpp"
+#include "planner/open_loop.hpp"
 
 namespace jink::planner {
 namespace {
@@ -246,8 +247,7 @@ TEST(HorizonPlanner, PlanUnderADeadlineIsRepeatedByItsSchedule) {
 
 Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {
   WorkerPool pool(threads);
-  HorizonPlanner planner{HorizonSettings{}};
-  return plan_open_loop(planner, {r, time_limit, commit}, 1, {40, Budget::Time::max()}, pool);
+  return plan_open_loop({}, {}, {r, time_limit, commit}, 1, {40, Budget::Time::max()}, pool);
 }
 
 PathRequest from_rest(const std::vector<Track>& tracks) {

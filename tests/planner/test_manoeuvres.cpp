@@ -98,7 +98,7 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
     const auto without = manoeuvres(request({}), cruise(), kTimes, kClearance);
     if (paths.size() == without.size()) continue;
     ++met;
-    ASSERT_EQ(paths.size(), without.size() + 4);
+    ASSERT_EQ(paths.size(), without.size() + 5);
     const double t = std::round(when);  // a time at which the displacement is held in full
     if (std::abs(t - when) > 0.4) continue;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -110,13 +110,27 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
   EXPECT_GT(met, 400);
 }
 
+// One that hangs in the way at x = 9: the last point is short of it by what is wanted, and it is come to gently.
+TEST(Manoeuvres, StopShortOfAnObstacle) {
+  const std::vector<Track> tracks{mover({9, 0, 5}, 0.0, {0, 0, 0})};
+  const double wanted = 0.5 + VehicleLimits{}.radius + kClearance;
+  const auto paths = manoeuvres(request(tracks), cruise(), kTimes, kClearance);
+  const TimedPath& stop = paths[4];
+  EXPECT_NEAR(stop.back().position.x(), 9.0 - wanted, 0.05);
+  for (std::size_t k = 1; k < stop.size(); ++k) {
+    EXPECT_GE(stop[k].position.x(), stop[k - 1].position.x());
+    EXPECT_LE(stop[k].position.x(), 9.0 - wanted + 1e-9);
+  }
+  EXPECT_NEAR(stop[1].position.x(), 6.0, 0.3);  // at cruise speed as long as that can be
+}
+
 TEST(Manoeuvres, LookAtTheFirstThreeEncounters) {
   std::vector<Track> tracks;
   for (const double when : {5.0, 2.0, 4.0, 1.0, 3.0}) tracks.push_back(mover({3 * when, 0, 5}, when, {0, 0, 0}));
   const auto all = manoeuvres(request(tracks), cruise(), kTimes, kClearance);
   const auto none = manoeuvres(request({}), cruise(), kTimes, kClearance);
-  EXPECT_EQ(all.size(), none.size() + 12);
-  EXPECT_GT(std::abs(all[8].at(2).position.y()) + std::abs(all[8].at(2).position.z() - 5.0), 0.5);  // the one at 3 s
+  EXPECT_EQ(all.size(), none.size() + 15);
+  EXPECT_GT(std::abs(all[10].at(2).position.y()) + std::abs(all[10].at(2).position.z() - 5.0), 0.5);  // the one at 3 s
 }
 
 }  // namespace

@@ -124,12 +124,12 @@ void print_slr(const Options& options, planner::WorkerPool& pool) {
     Outcomes ours;
     Outcomes theirs;
     Outcomes horizon;
-    planner::HorizonPlanner planner(planner::open_loop_settings({}));
+    const planner::HorizonSettings flight;
     for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(options.seeds); ++seed) {
       const planner::PaperRequest request = mission.request(seed);
       ours.add(mission, plan_paper(request, pool));
       theirs.add(mission, plan_paper(request, pagmo, pool));
-      horizon.add(mission, plan_open_loop(planner, mission.open_loop(), seed, {planner.settings().generations}, pool));
+      horizon.add(mission, plan_open_loop(flight, {}, mission.open_loop(), seed, {flight.generations}, pool));
     }
     std::vector<std::string> cells{name};
     for (const Outcomes& outcomes : {ours, theirs, horizon}) {

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "planner/horizon_planner.hpp"
 #include "planner/indicators.hpp"
 #include "sim/closed_loop.hpp"
 #include "sim/known_world.hpp"
@@ -38,12 +37,12 @@ struct Tally {
 };
 
 Tally plan_family(std::string_view family, int seeds, planner::WorkerPool& pool) {
-  planner::HorizonPlanner planner(planner::open_loop_settings({}));
+  const planner::HorizonSettings settings;
   Tally tally;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     const config::Scenario scenario = sim::make_world(family, seed);
     const sim::KnownWorld world(scenario);
-    const planner::Plan plan = plan_open_loop(planner, world.open_loop, seed, {planner.settings().generations}, pool);
+    const planner::Plan plan = plan_open_loop(settings, {}, world.open_loop, seed, {settings.generations}, pool);
     tally.add(scenario, plan.status == planner::PlanStatus::kReaches, planner::path_length(plan.path),
               plan.path.back().t, plan.verification.min_clearance);
   }

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/open_loop.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "planner/horizon_planner.hpp"
+#include "planner/obstacle_motion.hpp"
+
+namespace jink::planner {
+namespace {
+
+constexpr double kJoint = 1e-9;  // s, within which two instants are the same
+
+HorizonSettings for_shortest(HorizonSettings settings) {
+  settings.time_weight *= 0.04;
+  settings.deviation_weight *= 0.07;
+  settings.length_band *= 0.01;
+  settings.keep_ratio *= 0.01;
+  return settings;
+}
+
+bool arrives(const TimedPath& path, const OpenLoopRequest& request) {
+  return (path.back().position - request.path.target).norm() < 1e-6;
+}
+
+Verification verify_whole(const TimedPath& path, const OpenLoopRequest& request) {
+  return verify({path, request.path.tracks, 0.0, request.path.vehicle.radius, request.path.volume,
+                 request.path.acceleration_trust, kInfinity});
+}
+
+bool start_blocked(const PathRequest& request) {
+  return std::any_of(request.tracks.begin(), request.tracks.end(), [&](const Track& track) {
+    return (track.position - request.position).norm() < track.radius + request.vehicle.radius;
+  });
+}
+
+/// Adds the first `keep` seconds of a part, which starts at time `t`, to the whole.
+void append(const TimedPath& part, double t, double keep, TimedPath& whole) {
+  for (const TimedPoint& point : part) {
+    if (point.t > keep + kJoint) break;
+    if (!whole.empty() && point.t <= kJoint) continue;
+    whole.push_back({t + point.t, point.position, point.velocity, point.acceleration});
+  }
+  const TimedPoint end = sample(part, keep);
+  if (t + keep > whole.back().t + kJoint) whole.push_back({t + keep, end.position, end.velocity, end.acceleration});
+}
+
+Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed, const Budget& budget,
+             WorkerPool& pool) {
+  Plan whole;
+  PathRequest from = request.path;
+  std::vector<Track> now(request.path.tracks.size());
+  from.tracks = now;
+  TimedPath previous;
+  double t = 0.0;
+  for (std::uint64_t number = 0;; ++number) {
+    std::transform(request.path.tracks.begin(), request.path.tracks.end(), now.begin(),
+                   [&](const Track& track) { return predict(track, t, from.acceleration_trust); });
+    const Plan part = planner.plan(from, previous, seed, number, budget, pool);
+    if (part.status == PlanStatus::kInvalid) return part;
+    if (number == 0) whole.front = part.front;
+    whole.evaluations += part.evaluations;
+    whole.schedule = part.schedule;
+    whole.generations = part.generations;
+    whole.deadline_reached = whole.deadline_reached || part.deadline_reached || budget.expired();
+    const double end = part.path.back().t;
+    const double wanted = part.status == PlanStatus::kReaches ? end : std::min(request.commit, end);
+    const double keep = std::min(wanted, request.time_limit - t);
+    append(part.path, t, keep, whole.path);
+    t += keep;
+    if (keep == end || t + kJoint >= request.time_limit || budget.expired()) break;
+    const TimedPoint next = sample(part.path, keep);
+    from.position = next.position;
+    from.velocity = next.velocity;
+    previous = remainder(part.path, keep);
+    for (TimedPoint& point : previous) point.t -= keep;
+  }
+  whole.verification = verify_whole(whole.path, request);
+  whole.status = PlanStatus::kBlocked;
+  if (whole.verification.free()) {
+    whole.status = arrives(whole.path, request) ? PlanStatus::kReaches : PlanStatus::kProgresses;
+  }
+  return whole;
+}
+
+}  // namespace
+
+Plan plan_open_loop(const HorizonSettings& settings, const OptimizerSettings& optimizer, const OpenLoopRequest& request,
+                    std::uint64_t seed, const Budget& budget, WorkerPool& pool) {
+  if (start_blocked(request.path)) {
+    Plan plan;
+    plan.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
+    plan.verification = verify_whole(plan.path, request);
+    plan.status = PlanStatus::kStartBlocked;
+    return plan;
+  }
+  HorizonPlanner patient(for_shortest(settings), optimizer);
+  Plan plan = attempt(patient, request, seed, budget, pool);
+  if (plan.status == PlanStatus::kReaches || plan.status == PlanStatus::kInvalid || budget.expired()) return plan;
+  HorizonPlanner eager(settings, optimizer);
+  Plan other = attempt(eager, request, seed, budget, pool);
+  const auto worth = [&](const Plan& p) {
+    const double left = (p.path.back().position - request.path.target).norm();
+    return std::tuple(p.status == PlanStatus::kReaches, p.verification.free(), -left);
+  };
+  other.evaluations += plan.evaluations;
+  plan.evaluations = other.evaluations;
+  other.deadline_reached = plan.deadline_reached || other.deadline_reached;
+  return worth(other) > worth(plan) ? other : plan;
+}
+
+}  // namespace jink::planner
