@@ -35,6 +35,8 @@ class HorizonPlanner {
             const Budget& budget, WorkerPool& pool);
 
   [[nodiscard]] const HorizonSettings& settings() const { return settings_; }
+  /// How far a plan looks ahead, s.
+  [[nodiscard]] double horizon() const { return problem_.horizon(); }
 
  private:
   /// Names the random numbers of a plan.

@@ -66,7 +66,10 @@ Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint6
     whole.generations = part.generations;
     whole.deadline_reached = whole.deadline_reached || part.deadline_reached || budget.expired();
     const double end = part.path.back().t;
-    const double wanted = part.status == PlanStatus::kReaches ? end : std::min(request.commit, end);
+    // What is known to be free: to the target, or as far as was looked ahead. Without time left that is the result.
+    double wanted = std::min(request.commit, end);
+    if (part.status == PlanStatus::kReaches) wanted = end;
+    if (part.status == PlanStatus::kProgresses && budget.expired()) wanted = std::min(planner.horizon(), end);
     const double keep = std::min(wanted, request.time_limit - t);
     append(part.path, t, keep, whole.path);
     t += keep;

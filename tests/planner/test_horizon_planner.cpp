@@ -316,6 +316,20 @@ TEST(PlanOpenLoop, DoesNotReachABlockedTarget) {
   EXPECT_LE(plan.path.back().t, 15.0 + 0.5 + 1e-9);
 }
 
+// No time for more than one plan: what that one has verified is the result, not the half second that is committed to.
+TEST(PlanOpenLoop, ExpiredDeadlineStillGivesAFreePath) {
+  const std::vector<Track> tracks = blocked_lines()[1].tracks;
+  PathRequest r = from_rest(tracks);
+  r.target = {60, 0, 2};  // farther than a plan looks
+  r.volume.max.x() = 65;
+  WorkerPool pool(1);
+  const Plan plan = plan_open_loop({}, {}, {r, 60.0, 0.5}, 1, {40, Budget::Time::min()}, pool);
+  EXPECT_TRUE(plan.deadline_reached);
+  EXPECT_TRUE(check(r, plan.path).free());
+  EXPECT_GE(plan.path.back().t, 6.0 - 1e-9);
+  expect_flyable(plan, r);
+}
+
 TEST(PlanOpenLoop, RefusesNumbersThatAreNotFinite) {
   std::vector<Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};
   tracks[0].position.x() = std::numeric_limits<double>::quiet_NaN();
