@@ -31,6 +31,20 @@ std::string_view to_string(FlightMode mode) {
   return "unknown";
 }
 
+std::string_view to_string(BatteryState state) {
+  switch (state) {
+    case BatteryState::kUnknown:
+      return "unknown";
+    case BatteryState::kOk:
+      return "ok";
+    case BatteryState::kLow:
+      return "low";
+    case BatteryState::kCritical:
+      return "critical";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(Command command) {
   switch (command) {
     case Command::kArm:

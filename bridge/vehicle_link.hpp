@@ -3,10 +3,12 @@
 // link of sim/closed_loop. Frame: local ENU from the autopilot's local origin; yaw counter-clockwise from east.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "bridge/geodetic.hpp"
 #include "planner/types.hpp"
 
 namespace jink::bridge {
@@ -29,6 +31,10 @@ enum class FlightMode {
 /// "hold", "offboard", ...: for people and logs.
 std::string_view to_string(FlightMode mode);
 
+enum class BatteryState { kUnknown, kOk, kLow, kCritical };
+/// "ok", "low", ...: for people and logs.
+std::string_view to_string(BatteryState state);
+
 /// The newest of everything the autopilot has told. Stamps are in the companion's clock; negative: never heard.
 struct VehicleState {
   double heartbeat_stamp = -1.0;  ///< newest heartbeat, which carries armed and mode
@@ -42,6 +48,13 @@ struct VehicleState {
   bool local_position_ok = false;  ///< its estimator holds a local position
   bool in_air = false;             ///< landed state says so (or taking off, landing)
   std::string health;              ///< what is missing, in the autopilot's terms; empty when nothing is
+  bool failsafe = false;           ///< the autopilot's own failsafe flies: HEARTBEAT.system_status CRITICAL or worse
+  /// Jumps of the position estimate since the first position: how many, and the sum of them. The vehicle did not move.
+  std::uint32_t estimate_resets = 0;
+  Vec3 estimate_shift = Vec3::Zero();
+  BatteryState battery = BatteryState::kUnknown;
+  std::optional<Geodetic> origin;  ///< of the local frame; none: not told yet
+  std::uint32_t system_id = 0;     ///< MAVLink system of the autopilot; 0: not found yet
 };
 
 /// What the vehicle is asked to follow: position with velocity and acceleration feed-forward, and a heading.

@@ -89,12 +89,37 @@ void read_heights(const Map& map, Mission& mission) {
   }
 }
 
+TrackSources read_sources(const Value& value) {
+  static constexpr std::array<std::string_view, 3> kNames = {"jink", "autoware", "adsb"};
+  std::array<bool, kNames.size()> named{};
+  for (const Value& name : value.list(1, kNames.size())) named[name.choice(kNames)] = true;
+  return {named[0], named[1], named[2]};
+}
+
+Transport read_transport(const Value& value) {
+  static constexpr std::array<std::string_view, 2> kNames = {"mavlink", "dds"};
+  return value.choice(kNames) == 0 ? Transport::kMavlink : Transport::kDds;
+}
+
+// What may stand before PX4's topics: one or more names of letters, digits and underscores, parted by slashes.
+std::string read_namespace(const Value& value) {
+  const std::string text = value.text();
+  const auto good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/';
+  };
+  if (!std::all_of(text.begin(), text.end(), good) || text.front() == '/' || text.back() == '/') {
+    value.fail("is not a namespace; expected names of letters, digits and _, parted by /");
+  }
+  return text;
+}
+
 TrackPolicy read_tracks(const Value& value) {
-  const Map map(value, {"required", "timeout_s", "coast_s"});
+  const Map map(value, {"required", "timeout_s", "coast_s", "sources"});
   TrackPolicy tracks;
   if (const auto required = map.find("required")) tracks.required = required->boolean();
   tracks.timeout_s = map.number_or("timeout_s", above(0, 60), tracks.timeout_s);
   tracks.coast_s = map.number_or("coast_s", closed(0, 60), tracks.coast_s);
+  if (const auto sources = map.find("sources")) tracks.sources = read_sources(*sources);
   return tracks;
 }
 
@@ -103,7 +128,7 @@ TrackPolicy read_tracks(const Value& value) {
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
                 {"format", "name", "connection", "vehicle", "takeoff_height", "min_height", "waypoints", "arrival",
-                 "geofence", "dds", "tracks", "time_limit"},
+                 "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
                 "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
@@ -121,9 +146,13 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
     mission.arrival = arrival->choice(kArrivals) == 0 ? Arrival::kLand : Arrival::kHold;
   }
   if (const auto dds = map.find("dds")) {
-    const Map domain(*dds, {"domain"});
-    mission.dds_domain = domain.integer("domain", closed(0, 232));  // what RTPS's port numbers leave room for
+    const Map keys(*dds, {"domain", "namespace"});
+    if (const auto id = keys.find("domain")) mission.dds_domain = id->integer(closed(0, 232));  // as RTPS's ports allow
+    if (const auto name = keys.find("namespace")) mission.dds_namespace = read_namespace(*name);
   }
+  if (const auto state = map.find("state")) mission.state = read_transport(*state);
+  if (const auto setpoints = map.find("setpoints")) mission.setpoints = read_transport(*setpoints);
+  if (const auto intents = map.find("intents")) mission.intents = intents->boolean();
   if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
   mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
   return mission;

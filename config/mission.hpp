@@ -12,10 +12,22 @@ namespace jink::config {
 
 enum class Arrival { kLand, kHold };
 
+/// Where the vehicle's position comes from and where setpoints go: MAVLink, or DDS as PX4's uXRCE-DDS agent has it.
+/// Arming, modes and health are MAVLink's in either case.
+enum class Transport { kMavlink, kDds };
+
+/// Who may tell of obstacles.
+struct TrackSources {
+  bool jink = true;      ///< jink_msgs/ObstacleTracks on DDS
+  bool autoware = true;  ///< autoware_perception_msgs/TrackedObjects on DDS
+  bool adsb = true;      ///< ADSB_VEHICLE on the MAVLink connection
+};
+
 struct TrackPolicy {
   bool required = true;    ///< no flight without a live track writer
   double timeout_s = 1.0;  ///< silence of the writers after which the picture is stale
   double coast_s = 1.0;    ///< how long a track that is no longer reported is predicted on
+  TrackSources sources;
 };
 
 struct Mission {
@@ -29,6 +41,10 @@ struct Mission {
   Arrival arrival = Arrival::kLand;
   planner::Box geofence;  ///< unbounded when the file has none
   int dds_domain = 0;
+  std::string dds_namespace;  ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
+  Transport state = Transport::kMavlink;
+  Transport setpoints = Transport::kMavlink;
+  bool intents = true;  ///< tells the team's other vehicles the committed path, and avoids theirs
   TrackPolicy tracks;
   double time_limit = 300.0;
 };
@@ -36,8 +52,8 @@ struct Mission {
 /// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does, and finds vehicles as it does.
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
-/// takeoff_height, min_height, arrival, geofence (unbounded; with both min and max when given), dds.domain, tracks and
-/// each of its keys, time_limit.
+/// takeoff_height, min_height, arrival, geofence (unbounded; with both min and max when given), dds.domain,
+/// dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds), intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
 /// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. A waypoint may be lower than min_height,

@@ -12,23 +12,6 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 }  // namespace
 
-LocalFrame::LocalFrame(const Geodetic& origin)
-    : origin_(origin), tangent_plane_(origin.latitude_deg, origin.longitude_deg, origin.altitude_m) {}
-
-Geodetic LocalFrame::to_geodetic(const Vec3& position_enu) const {
-  Geodetic result;
-  tangent_plane_.Reverse(position_enu.x(), position_enu.y(), position_enu.z(), result.latitude_deg,
-                         result.longitude_deg, result.altitude_m);
-  return result;
-}
-
-Vec3 LocalFrame::to_enu(const Geodetic& position) const {
-  Vec3 result;
-  tangent_plane_.Forward(position.latitude_deg, position.longitude_deg, position.altitude_m, result.x(), result.y(),
-                         result.z());
-  return result;
-}
-
 Vec3 swap_enu_ned(const Vec3& v) {
   return {v.y(), v.x(), -v.z()};
 }

@@ -1,35 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The edge's conversions: ENU and FLU of the simulator to NED, FRD and geodetic coordinates of MAVLink.
+// The edge's conversions: ENU and FLU of the simulator to NED and FRD of MAVLink; geodetic ones are bridge/frames'.
 #pragma once
 
 #include <Eigen/Geometry>
-#include <GeographicLib/LocalCartesian.hpp>
 
+#include "bridge/frames.hpp"
 #include "planner/types.hpp"
 
 namespace jink::sim {
 
-struct Geodetic {
-  double latitude_deg = 0.0;
-  double longitude_deg = 0.0;
-  double altitude_m = 0.0;  ///< above the ellipsoid; the simulator's mean sea level is the ellipsoid
-};
+using bridge::Geodetic;
+using bridge::LocalFrame;
 
 /// Where PX4's SITL starts.
 inline constexpr Geodetic kSitlOrigin{47.397743, 8.545594, 489.4};
-
-/// The tangent plane at an origin.
-class LocalFrame {
- public:
-  explicit LocalFrame(const Geodetic& origin);
-  [[nodiscard]] const Geodetic& origin() const { return origin_; }
-  [[nodiscard]] Geodetic to_geodetic(const planner::Vec3& position_enu) const;
-  [[nodiscard]] planner::Vec3 to_enu(const Geodetic& position) const;
-
- private:
-  Geodetic origin_;
-  GeographicLib::LocalCartesian tangent_plane_;
-};
 
 /// ENU to NED and back: the same swap.
 [[nodiscard]] planner::Vec3 swap_enu_ned(const planner::Vec3& v);

@@ -64,6 +64,26 @@ TEST(LoadMission, FillsInWhatIsOptional) {
   EXPECT_EQ(m.tracks.timeout_s, 1.0);
   EXPECT_EQ(m.tracks.coast_s, 0.0);
   EXPECT_EQ(m.time_limit, 300.0);
+  EXPECT_EQ(m.dds_namespace, "");
+  EXPECT_EQ(m.state, Transport::kMavlink);
+  EXPECT_EQ(m.setpoints, Transport::kMavlink);
+  EXPECT_TRUE(m.intents);
+  EXPECT_TRUE(m.tracks.sources.jink && m.tracks.sources.autoware && m.tracks.sources.adsb);
+}
+
+TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
+  std::string text = kValid;
+  text += "state: dds\nsetpoints: dds\nintents: false\n";
+  text.replace(text.find("domain: 7"), 9, "domain: 7, namespace: px4_1/team");
+  text.replace(text.find("coast_s: 0.5"), 12, "sources: [adsb]");
+  const TempFolder folder;
+  const Mission m = load_mission(folder.write("m.yaml", text));
+  EXPECT_EQ(m.dds_namespace, "px4_1/team");
+  EXPECT_EQ(m.state, Transport::kDds);
+  EXPECT_EQ(m.setpoints, Transport::kDds);
+  EXPECT_FALSE(m.intents);
+  EXPECT_FALSE(m.tracks.sources.jink || m.tracks.sources.autoware);
+  EXPECT_TRUE(m.tracks.sources.adsb);
 }
 
 TEST(LoadMission, AcceptsTheUrlsOfMavsdk) {
@@ -120,6 +140,11 @@ TEST(LoadMission, RefusesBadValues) {
       {"domain: 7", "domain: 233", 10, "dds.domain", "233", "is not in [0, 232]"},
       {"domain: 7", "domain: 1.5", 10, "dds.domain", "1.5", "is not an integer; expected an integer in [0, 232]"},
       {"domain: 7", "domain: 99999999999999999999", 10, "dds.domain", "99999999999999999999", "is not in [0, 232]"},
+      {"domain: 7", "domain: 7, namespace: /px4", 10, "dds.namespace", "/px4", "is not a namespace"},
+      {"domain: 7", "domain: 7, namespace: \"px 4\"", 10, "dds.namespace", "px 4", "is not a namespace"},
+      {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 3]"},
+      {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar", "is not one of jink, autoware, adsb"},
+      {"time_limit: 120", "state: ros", 12, "state", "ros", "is not one of mavlink, dds"},
       {"required: false", "required: maybe", 11, "tracks.required", "maybe", "is not true or false"},
       {"timeout_s: 1.5", "timeout_s: 0", 11, "tracks.timeout_s", "0", "is not in (0, 60]"},
       {"coast_s: 0.5", "coast_s: -1", 11, "tracks.coast_s", "-1", "is not in [0, 60]"},
