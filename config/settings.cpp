@@ -106,6 +106,7 @@ constexpr Field<CompanionSettings> kCompanion[] = {
     {"drag", &CompanionSettings::drag, closed(0, 5)},
     {"stale_state", &CompanionSettings::stale_state, above(0, 60)},
     {"stale_plan", &CompanionSettings::stale_plan, above(0, 60)},
+    {"margin_limit", &CompanionSettings::margin_limit, closed(0, 10)},
 };
 
 std::string path_of(std::string_view section, std::string_view key) {
