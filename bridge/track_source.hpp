@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bridge/wake.hpp"
 #include "planner/types.hpp"
 
 namespace jink::bridge {
@@ -34,6 +35,9 @@ class TrackSource {
   /// Takes the oldest message not yet taken; false when there is none. Never blocks.
   virtual bool poll(TrackMessage& message) = 0;
   [[nodiscard]] virtual TrackSourceStatus status() const = 0;
+  /// From now on `wake`, which outlives the source, is notified when a message has come. Where nothing comes by itself
+  /// (virtual time) it does nothing.
+  virtual void notify(Wake& /*wake*/) {}
 };
 
 }  // namespace jink::bridge

@@ -77,19 +77,18 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
       {"parameters", parameters_of(settings)}};
 }
 
-/// Turns the loop at the setpoints' rate until the flight is over; Ctrl-C brakes and hands over to HOLD.
-void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz) {
-  const auto begun = std::chrono::steady_clock::now();
+/// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
+/// Ctrl-C brakes and hands over to HOLD.
+void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz, bridge::Wake& wake) {
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
-  auto next = begun;
+  auto next = std::chrono::steady_clock::now() + period;
   while (companion.step(clock.now())) {
     if (interrupted()) companion.interrupt(clock.now());
-    next += period;
+    wake.wait_until(next);
     // A turn that came late is not made up for: setpoints in a burst say nothing.
     const auto now = std::chrono::steady_clock::now();
-    if (next < now) next = now;
-    std::this_thread::sleep_until(next);
+    if (next <= now) next = std::max(next + period, now);
   }
 }
 
@@ -104,6 +103,7 @@ int run(const FlyOptions& options) {
   const config::Mission mission = config::load_mission(options.mission);
   catch_signals();
   const bridge::SteadyClock clock;
+  bridge::Wake wake;
   Teller teller(mission, printer);
   std::vector<bridge::FlightObserver*> observers{&teller};
   std::unique_ptr<FlightLog> log;
@@ -121,12 +121,13 @@ int run(const FlyOptions& options) {
   });
   bridge::DdsTrackReader tracks(mission.dds_domain, clock);
   bridge::ThreadedPlanner planner(
-      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock);
-  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});
+      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &wake);
+  tracks.notify(wake);
+  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers, &clock});
   printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
                            mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
                            mission.dds_domain, options.common.seed));
-  run_loop(companion, clock, settings.companion.setpoint_rate_hz);
+  run_loop(companion, clock, settings.companion.setpoint_rate_hz, wake);
 
   if (log) log->close();
   const bridge::FlightSummary flight = companion.summary();
