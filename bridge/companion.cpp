@@ -189,7 +189,7 @@ double Companion::margin() const {
 void Companion::start_plan(double now) {
   const config::CompanionSettings& companion = settings_.companion;
   if (planner_failed_ || parts_.planner.busy()) return;
-  const double period = (new_tracks_ ? 0.5 : 1.0) / companion.replan_rate_hz;
+  const double period = 1.0 / (new_tracks_ ? companion.largest_replan_rate_hz : companion.replan_rate_hz);
   if (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < period) return;
   last_plan_begun_ = now;
   new_tracks_ = false;

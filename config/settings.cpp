@@ -99,6 +99,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
 constexpr Field<CompanionSettings> kCompanion[] = {
     {"setpoint_rate_hz", &CompanionSettings::setpoint_rate_hz, closed(2, 1000)},  // below 2 Hz PX4 leaves OFFBOARD
     {"replan_rate_hz", &CompanionSettings::replan_rate_hz, above(0, 1000)},
+    {"largest_replan_rate_hz", &CompanionSettings::largest_replan_rate_hz, above(0, 1000)},
     {"planner_latency_ms", &CompanionSettings::planner_latency_ms, closed(0, 10000)},
     {"commitment", &CompanionSettings::commitment, closed(0, 5)},
     {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},

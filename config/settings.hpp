@@ -13,8 +13,9 @@ namespace jink::config {
 /// The loop around the planner: rates and what virtual time assumes.
 struct CompanionSettings {
   double setpoint_rate_hz = 50.0;
-  double replan_rate_hz = 20.0;      ///< without new tracks; a new track message starts a plan at up to twice the rate
-  double planner_latency_ms = 20.0;  ///< in virtual time: from a plan's start to its use
+  double replan_rate_hz = 10.0;          ///< at least, also where no new tracks come
+  double largest_replan_rate_hz = 40.0;  ///< at most: a new track message starts a plan at once, but no sooner
+  double planner_latency_ms = 20.0;      ///< in virtual time: from a plan's start to its use
   double commitment = 0.2;      ///< from a plan's beginning to its start at the least: the present plan is flown until
                                 ///< then, since the vehicle answers a new acceleration that late
   double setpoint_lead = 0.04;  ///< how far ahead of now the plan is sampled for position and velocity: the transport
