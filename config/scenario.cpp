@@ -16,6 +16,7 @@ constexpr Range kSize = above(0, 1e3);
 constexpr Range kAngle = within(1e6);
 constexpr std::size_t kMostObstacles = 10000;
 constexpr std::size_t kMostPoints = 10000;
+constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 
 Vec3 read_edges(const Value& value) {
   const std::vector<Value> items = value.list(3, 3);
@@ -157,6 +158,38 @@ Vec3 read_point_in_world(const Map& map, std::string_view key, const std::option
   return point;
 }
 
+/// They take off from the ground below their starts, where they must not touch.
+void check_clear(const Map& map, const ScenarioVehicle& vehicle, const std::vector<ScenarioVehicle>& others) {
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const double apart = (vehicle.start - others[k].start).head<2>().norm();
+    const double needed = vehicle.vehicle.radius + others[k].vehicle.radius;
+    if (apart > needed) continue;
+    map.at("start", "")
+        .fail("is " + number_text(apart) + " m from vehicle " + std::to_string(k) +
+              " on the ground; expected more than " + number_text(needed) + " m, both radii");
+  }
+}
+
+std::vector<ScenarioVehicle> read_further(const Value& value, const Scenario& scenario,
+                                          const std::filesystem::path& file, const std::filesystem::path& vehicles) {
+  std::vector<ScenarioVehicle> all = all_vehicles(scenario);
+  for (const Value& item : value.list(0, kMostFurtherVehicles)) {
+    const Map map(item, {"start", "target", "vehicle"});
+    ScenarioVehicle further = all.front();
+    further.start = read_point_in_world(map, "start", scenario.world);
+    further.target = read_point_in_world(map, "target", scenario.world);
+    if (const auto own = map.find("vehicle")) {
+      NamedVehicle named = read_vehicle(*own, file, vehicles);
+      further.vehicle_name = std::move(named.name);
+      further.vehicle = named.limits;
+    }
+    check_clear(map, further, all);
+    all.push_back(std::move(further));
+  }
+  all.erase(all.begin());
+  return all;
+}
+
 // The contract's default: ten times as long as the straight flight, and half a minute to get going.
 double default_time_limit(const Scenario& scenario) {
   return 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
@@ -164,10 +197,17 @@ double default_time_limit(const Scenario& scenario) {
 
 }  // namespace
 
+std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
+  std::vector<ScenarioVehicle> all{{scenario.start, scenario.target, scenario.vehicle_name, scenario.vehicle}};
+  all.insert(all.end(), scenario.vehicles.begin(), scenario.vehicles.end());
+  return all;
+}
+
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(read_document(file),
-                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles"},
-                "jink-scenario/1");
+  const Map map(
+      read_document(file),
+      {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles", "vehicles"},
+      "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
   if (const auto world = map.find("world")) scenario.world = read_box(*world, kCoordinate);
@@ -183,6 +223,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
     Shape shape = read_shape(obstacle);
     scenario.obstacles.push_back({std::move(shape), read_motion(obstacle)});
   }
+  if (const auto further = map.find("vehicles")) scenario.vehicles = read_further(*further, scenario, file, vehicles);
   return scenario;
 }
 

@@ -130,9 +130,10 @@ class VirtualTracks final : public bridge::TrackSource {
 };
 
 /// Judges the true motion from step to step.
-class Judge {
+class FlightJudge {
  public:
-  Judge(const World& world, ClosedLoopResult& result) : world_(world), result_(result), last_(world.scenario().start) {}
+  FlightJudge(const World& world, ClosedLoopResult& result)
+      : world_(world), result_(result), last_(world.scenario().start) {}
 
   /// The outcome that ends the flight here, if any.
   bridge::Outcome watch(double t, const Vec3& position) {
@@ -205,7 +206,7 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
                                  1e-3 * settings.companion.planner_latency_ms);
   bridge::Companion companion(mission_of(scenario), settings, {link, tracks, planner, options.flight_observers});
 
-  Judge judge(world, result);
+  FlightJudge judge(world, result);
   const int steps_per_turn =
       std::max(1, static_cast<int>(std::lround(1.0 / (settings.companion.setpoint_rate_hz * VehicleModel::kStep))));
   bridge::Outcome ended = bridge::Outcome::kNone;
@@ -217,8 +218,8 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
     ended = judge.watch(t, motion.position);
     tracks.step(t, world, motion.position);
     if (step % steps_per_turn == 0 || ended != bridge::Outcome::kNone) {
-      for (TruthObserver* observer : options.truth_observers)
-        observer->on_truth(t, motion.position, motion.velocity, world);
+      const VehicleTruth truth{motion.position, motion.velocity};
+      for (TruthObserver* observer : options.truth_observers) observer->on_truth(t, std::span(&truth, 1), world);
     }
     if (ended != bridge::Outcome::kNone) break;
     if (step % steps_per_turn == 0 && !companion.step(t)) break;

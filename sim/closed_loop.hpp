@@ -9,17 +9,10 @@
 #include "bridge/companion.hpp"
 #include "config/scenario.hpp"
 #include "config/settings.hpp"
+#include "sim/truth.hpp"
 #include "sim/world.hpp"
 
 namespace jink::sim {
-
-/// Who wants to know the truth. Times are scenario time.
-class TruthObserver {
- public:
-  virtual ~TruthObserver() = default;
-  /// The vehicle's true motion and the world that it is in, every 20 ms.
-  virtual void on_truth(double t, const Vec3& position, const Vec3& velocity, const World& world) = 0;
-};
 
 struct ClosedLoopOptions {
   std::uint64_t seed = 1;

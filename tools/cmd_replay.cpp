@@ -28,6 +28,11 @@ int run(const ReplayOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
+  if (!scenario.vehicles.empty()) {
+    throw UsageError(options.scenario +
+                     ": key 'vehicles': replay flies one vehicle; fly several with jink sim and one " +
+                     "jink fly for each");
+  }
 
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
