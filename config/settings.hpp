@@ -49,6 +49,12 @@ struct SettingText {
 /// Every parameter, in the order of config/planner.yaml; for the header of a flight log and for tests.
 std::vector<SettingText> list_settings(const Settings& settings);
 
+/// Parameters as list_settings() gave them once, in a flight log: the defaults with `values` in their place, then
+/// `overrides` as in load_settings(), checked like a file. Keys that `values` lacks keep their default and are added to
+/// `missing`. Throws ConfigError naming `source` and the key, also for a key that is not known any more.
+Settings recorded_settings(const std::string& source, const std::vector<SettingText>& values,
+                           const std::vector<std::string>& overrides, std::vector<std::string>& missing);
+
 /// Where the project's own files are, planner.yaml, vehicles/, scenarios/ and missions/: the environment variable
 /// JINK_CONFIG_DIR, else the source tree's config folder. The environment is read at each call.
 std::filesystem::path config_folder();

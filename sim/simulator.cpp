@@ -137,7 +137,7 @@ std::vector<VehicleReport> Simulator::reports() const {
     bridge::FlightSummary& flight = reports[k].flight;
     if (flight.outcome != bridge::Outcome::kNone) continue;
     flight.outcome = bridge::Outcome::kAborted;
-    flight.reason = clock_runs()                  ? "ended before the target was reached"
+    flight.reason = clock_runs()                ? "ended before the target was reached"
                     : vehicles_[k].was_at_start ? "another vehicle never came to its start in OFFBOARD"
                                                 : "the vehicle never came to the start in OFFBOARD";
   }

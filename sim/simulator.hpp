@@ -28,22 +28,22 @@ class SimulatorObserver : public TruthObserver {
 
 struct SimulatorOptions {
   std::uint64_t seed = 1;
-  int instance = 0;             ///< vehicle k is MAVLink instance `instance` + k
-  bool vehicles = true;         ///< false: the obstacles alone, and their clock runs at once
-  bool immediate_clock = false;  ///< does not wait for the vehicles
+  int instance = 0;                          ///< vehicle k is MAVLink instance `instance` + k
+  bool vehicles = true;                      ///< false: the obstacles alone, and their clock runs at once
+  bool immediate_clock = false;              ///< does not wait for the vehicles
   std::vector<EndpointOptions> endpoints{};  ///< one for each vehicle, in place of the instances'; empty: those
 };
 
 struct SimulatorParts {
-  /// Takes a track message that is due at `now`, in the simulator's time; false: it could not be published. None: nobody
-  /// is told of the obstacles.
+  /// Takes a track message that is due at `now`, in the simulator's time; false: it could not be published. None:
+  /// nobody is told of the obstacles.
   std::function<bool(const TrackMessage&, double now)> publish{};
   std::vector<SimulatorObserver*> observers{};
 };
 
-/// The vehicles stand on the ground below their starts. The obstacles stand at their t = 0 positions until every vehicle
-/// has been within 0.5 m of its start in OFFBOARD; then the scenario's clock runs. A collision stops the motors of the
-/// vehicles involved. All vehicles share the scenario's origin, as a place on earth too. Not thread-safe.
+/// The vehicles stand on the ground below their starts. The obstacles stand at their t = 0 positions until every
+/// vehicle has been within 0.5 m of its start in OFFBOARD; then the scenario's clock runs. A collision stops the motors
+/// of the vehicles involved. All vehicles share the scenario's origin, as a place on earth too. Not thread-safe.
 class Simulator {
  public:
   static constexpr double kAtStart = 0.5;  ///< m, from the start, in OFFBOARD: ready for the clock
