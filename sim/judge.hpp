@@ -29,7 +29,7 @@ struct Verdict {
 
 /// What became of one vehicle.
 struct VehicleReport {
-  bridge::FlightSummary flight;                ///< times and lengths are those since the scenario's clock started
+  bridge::FlightSummary flight;               ///< times and lengths are those since the scenario's clock started
   double min_clearance = planner::kInfinity;  ///< to any obstacle or other vehicle, before and after that too
   /// It hit something or left the world.
   [[nodiscard]] bool failed() const {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink replay: a scenario flown closed loop in virtual time, in one process.
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "config/scenario.hpp"
@@ -17,6 +19,18 @@ struct ReplayOptions {
   std::string scenario;
   std::string log;
   std::string report;
+};
+
+/// The faults to the terminal as they begin and end.
+class FaultPrinter final : public bridge::FlightObserver {
+ public:
+  explicit FaultPrinter(const Printer& printer) : printer_(printer) {}
+  void on_event(double t, std::string_view name, const std::string& detail) override {
+    if (name == "fault") printer_.line(fmt::format("t {:6.2f} s  fault: {}", t, detail));
+  }
+
+ private:
+  const Printer& printer_;
 };
 
 int run(const ReplayOptions& options) {
@@ -37,6 +51,8 @@ int run(const ReplayOptions& options) {
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
+  FaultPrinter faults(printer);
+  loop.flight_observers.push_back(&faults);
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
     log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
