@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "config/fault_reader.hpp"
 #include "config/vehicle_reader.hpp"
 
 namespace jink::config {
@@ -147,6 +148,25 @@ Sensing read_sensing(const Value& value) {
   return sensing;
 }
 
+Wind read_wind(const Value& value) {
+  const Map map(value, {"mean", "gust", "gust_time"});
+  Wind wind;
+  wind.mean = map.vec3_or("mean", within(100), wind.mean);
+  wind.gust = map.number_or("gust", closed(0, 100), wind.gust);
+  wind.gust_time = map.number_or("gust_time", above(0, 1e4), wind.gust_time);
+  return wind;
+}
+
+EstimateErrors read_estimate(const Value& value) {
+  const Map map(value, {"position_noise", "velocity_noise", "drift", "drift_time"});
+  EstimateErrors errors;
+  errors.position_noise = map.number_or("position_noise", closed(0, 100), errors.position_noise);
+  errors.velocity_noise = map.number_or("velocity_noise", closed(0, 100), errors.velocity_noise);
+  errors.drift = map.number_or("drift", closed(0, 1000), errors.drift);
+  errors.drift_time = map.number_or("drift_time", above(0, 1e6), errors.drift_time);
+  return errors;
+}
+
 Vec3 read_point_in_world(const Map& map, std::string_view key, const std::optional<planner::Box>& world) {
   const Vec3 point = map.vec3(key, kCoordinate);
   for (std::size_t i = 0; world && i < 3; ++i) {
@@ -204,10 +224,10 @@ std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
 }
 
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(
-      read_document(file),
-      {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles", "vehicles"},
-      "jink-scenario/1");
+  const Map map(read_document(file),
+                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles",
+                 "vehicles", "wind", "estimate", "faults"},
+                "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
   if (const auto world = map.find("world")) scenario.world = read_box(*world, kCoordinate);
@@ -224,6 +244,10 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
     scenario.obstacles.push_back({std::move(shape), read_motion(obstacle)});
   }
   if (const auto further = map.find("vehicles")) scenario.vehicles = read_further(*further, scenario, file, vehicles);
+  if (const auto wind = map.find("wind")) scenario.wind = read_wind(*wind);
+  if (const auto estimate = map.find("estimate")) scenario.estimate = read_estimate(*estimate);
+  if (const auto faults = map.find("faults"))
+    scenario.faults = read_faults(*faults, 1 + static_cast<int>(scenario.vehicles.size()));
   return scenario;
 }
 

@@ -28,7 +28,9 @@ struct ClosedLoopResult {
 };
 
 /// Flies from rest in the air at `start`, t = 0, to the target, until it is reached, something is hit, the world is
-/// left or the time limit passes. Bit-identical for the same arguments at any thread count.
+/// left or the time limit passes. The scenario's faults happen on the way, each beginning and end an event `fault` for
+/// the flight observers; further vehicles of the scenario are not there. Bit-identical for the same arguments at any
+/// thread count.
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options);
 

@@ -58,6 +58,10 @@ void MavlinkEndpoint::poll(double now) {
   impl_->poll(now);
 }
 
+void MavlinkEndpoint::impair(const LinkImpairment& impairment) {
+  impl_->impair(impairment);
+}
+
 std::uint16_t MavlinkEndpoint::companion_port() const {
   return impl_->links().front().local_port();
 }
@@ -72,6 +76,7 @@ EndpointCounters MavlinkEndpoint::counters() const {
     sum.received += link.received();
     sum.malformed += link.malformed();
   }
+  sum.setpoints = impl_->setpoints();
   return sum;
 }
 
@@ -82,7 +87,8 @@ MavlinkEndpoint::Impl::Impl(Autopilot& autopilot, const EndpointOptions& options
       system_id_(static_cast<std::uint8_t>(options.instance + 1)),
       start_factor_(std::clamp(autopilot.options().ready_delay / kReadyDelay, 0.0, 1.0)) {
   const auto open = [&](std::uint16_t local, std::uint16_t remote) {
-    links_.emplace_back(udp_address(options_.address, local), udp_address(options_.address, remote), system_id_);
+    links_.emplace_back(udp_address(options_.address, local), udp_address(options_.address, remote), system_id_,
+                        options_.seed);
     reset_streams(links_.back());
   };
   open(port_or(options_.companion_local_port, kCompanionLocalPort + options_.instance),
@@ -97,6 +103,7 @@ void MavlinkEndpoint::Impl::poll(double now) {
   watch_reboots();
   const bool link_up = reboots_ == 0 || now_ - boot_ >= kLinkUp * start_factor_;
   for (MavlinkLink& link : links_) {
+    link.advance(now_);
     link.receive([&](const mavlink_message_t& message) {
       if (link_up) handle(link, message);
     });
@@ -180,6 +187,7 @@ void MavlinkEndpoint::Impl::handle_position_target(const mavlink_message_t& mess
   mavlink_msg_set_position_target_local_ned_decode(&message, &target);
   const bool broadcast = target.target_system == 0 && target.target_component == MAV_COMP_ID_ALL;
   if (!broadcast && !for_us(target.target_system, target.target_component)) return;
+  ++setpoints_;
   const bool body = target.coordinate_frame == MAV_FRAME_BODY_NED;
   if (!body && target.coordinate_frame != MAV_FRAME_LOCAL_NED) {
     autopilot_.report(Severity::kCritical, "SET_POSITION_TARGET_LOCAL_NED coordinate frame " +

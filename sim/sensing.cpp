@@ -53,7 +53,7 @@ void SensingPipeline::step(double t, const World& world, std::span<const Vec3> v
     const double due = static_cast<double>(next_) / sensing_.rate;
     if (!(due <= t + kDueTolerance)) return;
     pending_.push_back(
-        {next_, due, due + sensing_.delay, measure(world, sensing_, seed_, next_, due - clock_start, vehicles)});
+        {next_, due, due + sensing_.delay, measure(world, sensing_, seed_, next_, due - clock_start, vehicles), 0.0});
   }
 }
 

@@ -39,6 +39,7 @@ struct TrackMessage {
   double stamp = 0.0;          ///< s, when it was measured
   double publication = 0.0;    ///< s, when it may be seen: stamp + delay
   std::vector<planner::Track> tracks;
+  double clock_offset = 0.0;  ///< s, by which the publisher's clock is ahead: its stamp is stamp + clock_offset
 };
 
 /// Takes measurement k at the time k / rate, counted without drift, and holds it back for the delay. Times are those of

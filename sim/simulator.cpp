@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "sim/vehicle_faults.hpp"
+
 namespace jink::sim {
 namespace {
 
@@ -17,8 +19,16 @@ Simulator::Vehicle::Vehicle(const config::ScenarioVehicle& what, const Autopilot
     : spec(what), autopilot(how), endpoint(std::make_unique<MavlinkEndpoint>(autopilot, where)) {}
 
 Simulator::Simulator(const config::Scenario& scenario, const SimulatorOptions& options, SimulatorParts parts)
-    : options_(options), parts_(std::move(parts)), world_(scenario), sensing_(scenario.sensing, options.seed) {
+    : options_(options),
+      parts_(std::move(parts)),
+      world_(scenario),
+      sensing_(scenario.sensing, options.seed),
+      timeline_(scenario.faults),
+      track_faults_(options.seed) {
   if (options_.vehicles) add_vehicles(config::all_vehicles(scenario));
+  const auto& faults = scenario.faults;
+  if (vehicles_.empty() && std::any_of(faults.begin(), faults.end(), [](const auto& f) { return f.of_vehicle(); }))
+    say("fault", "no vehicle here: the faults that befall one have no effect");
   if (vehicles_.empty() || options_.immediate_clock) start_clock();
 }
 
@@ -32,9 +42,11 @@ void Simulator::add_vehicles(const std::vector<config::ScenarioVehicle>& specs) 
     vehicle.ground_height = ground;
     vehicle.position = {specs[k].start.x(), specs[k].start.y(), ground};
     vehicle.cascade.max_descent = specs[k].vehicle.max_climb;
+    set_conditions(world_.scenario(), options_.seed, static_cast<int>(k), vehicle);
     EndpointOptions endpoint;
     endpoint.instance = options_.instance + static_cast<int>(k);
     if (!options_.endpoints.empty()) endpoint = options_.endpoints.at(k);
+    endpoint.seed = options_.seed;
     vehicle.system_id = endpoint.instance + 1;
     vehicles_.emplace_back(specs[k], vehicle, endpoint);
   }
@@ -43,6 +55,7 @@ void Simulator::add_vehicles(const std::vector<config::ScenarioVehicle>& specs) 
 
 void Simulator::step() {
   now_ = static_cast<double>(steps_) * VehicleModel::kStep;
+  watch_faults();
   for (Vehicle& vehicle : vehicles_) vehicle.endpoint->poll(now_);
   watch_clock();
   judge();
@@ -84,6 +97,17 @@ void Simulator::watch_clock() {
   if (std::all_of(vehicles_.begin(), vehicles_.end(), [](const Vehicle& v) { return v.was_at_start; })) start_clock();
 }
 
+void Simulator::watch_faults() {
+  const std::vector<FaultChange> changes = timeline_.advance(scenario_time());
+  for (const FaultChange& change : changes) {
+    say("fault", "fault: " + timeline_.describe(change));
+    for (std::size_t k = 0; k < vehicles_.size(); ++k)
+      apply(timeline_, change, static_cast<int>(k), vehicles_[k].autopilot);
+  }
+  for (std::size_t k = 0; k < vehicles_.size() && !changes.empty(); ++k)
+    vehicles_[k].endpoint->impair(timeline_.link(static_cast<int>(k)));
+}
+
 /// What the true motion since the last step means. A collision stops the motors, as it would.
 void Simulator::judge() {
   if (!judge_) return;
@@ -115,19 +139,25 @@ void Simulator::publish() {
   sensing_.step(now_, world_, sensors, clock_start_.value_or(planner::kInfinity));
   TrackMessage message;
   while (sensing_.poll(now_, message)) {
+    if (!track_faults_.apply(timeline_, world_, truth(), message)) continue;
     if (parts_.publish && !parts_.publish(message, now_)) {
       say("publish_failed", "a track message could not be published");
     }
   }
 }
 
+std::vector<VehicleTruth> Simulator::truth() const {
+  std::vector<VehicleTruth> all;
+  for (const Vehicle& vehicle : vehicles_) {
+    all.push_back({vehicle.autopilot.true_motion().position, vehicle.autopilot.true_motion().velocity});
+  }
+  return all;
+}
+
 void Simulator::tell_truth() {
   if (vehicles_.empty()) return;
-  std::vector<VehicleTruth> truth;
-  for (const Vehicle& vehicle : vehicles_) {
-    truth.push_back({vehicle.autopilot.true_motion().position, vehicle.autopilot.true_motion().velocity});
-  }
-  for (SimulatorObserver* observer : parts_.observers) observer->on_truth(scenario_time(), truth, world_);
+  const std::vector<VehicleTruth> now = truth();
+  for (SimulatorObserver* observer : parts_.observers) observer->on_truth(scenario_time(), now, world_);
 }
 
 std::vector<VehicleReport> Simulator::reports() const {

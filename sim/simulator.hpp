@@ -12,9 +12,11 @@
 
 #include "config/scenario.hpp"
 #include "sim/autopilot.hpp"
+#include "sim/faults.hpp"
 #include "sim/judge.hpp"
 #include "sim/mavlink_endpoint.hpp"
 #include "sim/sensing.hpp"
+#include "sim/track_faults.hpp"
 #include "sim/truth.hpp"
 #include "sim/world.hpp"
 
@@ -43,7 +45,8 @@ struct SimulatorParts {
 
 /// The vehicles stand on the ground below their starts. The obstacles stand at their t = 0 positions until every
 /// vehicle has been within 0.5 m of its start in OFFBOARD; then the scenario's clock runs. A collision stops the motors
-/// of the vehicles involved. All vehicles share the scenario's origin, as a place on earth too. Not thread-safe.
+/// of the vehicles involved. The scenario's faults happen to them, their companions' links and the tracks; each
+/// beginning and end is an event. All vehicles share the scenario's origin, as a place on earth too. Not thread-safe.
 class Simulator {
  public:
   static constexpr double kAtStart = 0.5;  ///< m, from the start, in OFFBOARD: ready for the clock
@@ -79,11 +82,13 @@ class Simulator {
 
   [[nodiscard]] double scenario_time(double now) const;
   [[nodiscard]] std::vector<Vec3> positions() const;
+  [[nodiscard]] std::vector<VehicleTruth> truth() const;
   [[nodiscard]] std::string named(int vehicle, const std::string& text) const;
   void say(std::string_view name, const std::string& text);
   void add_vehicles(const std::vector<config::ScenarioVehicle>& specs);
   void start_clock();
   void watch_clock();
+  void watch_faults();
   void judge();
   void publish();
   void tell_truth();
@@ -92,6 +97,8 @@ class Simulator {
   SimulatorParts parts_;
   World world_;
   SensingPipeline sensing_;
+  FaultTimeline timeline_;
+  TrackFaults track_faults_;
   std::vector<Vehicle> vehicles_;
   std::optional<Judge> judge_;
   std::optional<double> clock_start_;

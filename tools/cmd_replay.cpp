@@ -27,6 +27,18 @@ struct ReplayOptions {
   bool own_seed = false;  ///< --seed was given
 };
 
+/// The faults to the terminal as they begin and end.
+class FaultPrinter final : public bridge::FlightObserver {
+ public:
+  explicit FaultPrinter(const Printer& printer) : printer_(printer) {}
+  void on_event(double t, std::string_view name, const std::string& detail) override {
+    if (name == "fault") printer_.line(fmt::format("t {:6.2f} s  fault: {}", t, detail));
+  }
+
+ private:
+  const Printer& printer_;
+};
+
 int replay_scenario(const ReplayOptions& options) {
   const Printer printer(options.common.json == "-");
   const config::Settings settings = options.common.settings();
@@ -42,6 +54,8 @@ int replay_scenario(const ReplayOptions& options) {
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
+  FaultPrinter faults(printer);
+  loop.flight_observers.push_back(&faults);
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
     FlightLogOptions in_virtual_time;

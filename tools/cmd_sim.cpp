@@ -172,7 +172,8 @@ int run(const SimOptions& options) {
   std::unique_ptr<bridge::DdsTrackWriter> writer;  // none: somebody else tells of the obstacles
   if (!options.no_tracks) writer = std::make_unique<bridge::DdsTrackWriter>(options.domain);
   const auto publish = [&](const sim::TrackMessage& message, double now) {
-    return !writer || writer->publish(message.tracks, unix_now() - (now - message.stamp) / options.speed);
+    const double age = (now - message.stamp) / options.speed;
+    return !writer || writer->publish(message.tracks, unix_now() - age + message.clock_offset);
   };
   sim::SimulatorOptions choices;
   choices.seed = options.common.seed;
