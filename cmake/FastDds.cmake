@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Target jink_idl: the DDS types of bridge/idl, generated at build time by fastddsgen, with Fast DDS and Fast CDR.
-# Not our code: its headers are SYSTEM and it is compiled without the project's warnings.
+# Not our code: its headers are SYSTEM and it is compiled without the project's warnings. Only the data types are
+# compiled in: topics travel as payloads (bridge/dds_support), so fastddsgen's own type support is not needed.
 find_package(fastcdr REQUIRED)
 find_package(fastrtps 2.9 REQUIRED)
 find_program(FASTDDSGEN fastddsgen)
@@ -9,18 +10,21 @@ if(NOT FASTDDSGEN)
                       "-DJINK_BUILD_BRIDGE=OFF")
 endif()
 
+# One run for all files: each that includes another writes that one's outputs again.
+set(_idl_names RosCommon ObstacleTracks)
 set(_idl_dir ${PROJECT_BINARY_DIR}/idl)
-set(_idl_file ${PROJECT_SOURCE_DIR}/bridge/idl/ObstacleTracks.idl)
-set(_idl_outputs)
-foreach(_suffix .h .cxx PubSubTypes.h PubSubTypes.cxx)
-  list(APPEND _idl_outputs ${_idl_dir}/ObstacleTracks${_suffix})
-endforeach()
 file(MAKE_DIRECTORY ${_idl_dir})  # fastddsgen does not make it
+list(TRANSFORM _idl_names PREPEND ${PROJECT_SOURCE_DIR}/bridge/idl/ OUTPUT_VARIABLE _idl_files)
+list(TRANSFORM _idl_files APPEND .idl)
+set(_idl_outputs)
+foreach(_name ${_idl_names})
+  list(APPEND _idl_outputs ${_idl_dir}/${_name}.h ${_idl_dir}/${_name}.cxx)
+endforeach()
 add_custom_command(
   OUTPUT ${_idl_outputs}
-  COMMAND ${FASTDDSGEN} -replace -d ${_idl_dir} ${_idl_file}
-  DEPENDS ${_idl_file}
-  COMMENT "Generating DDS types from bridge/idl/ObstacleTracks.idl"
+  COMMAND ${FASTDDSGEN} -replace -I ${PROJECT_SOURCE_DIR}/bridge/idl -d ${_idl_dir} ${_idl_files}
+  DEPENDS ${_idl_files}
+  COMMENT "Generating DDS types from bridge/idl"
   VERBATIM)
 
 add_library(jink_idl STATIC ${_idl_outputs})
