@@ -12,6 +12,7 @@
 #include "bridge/planner_task.hpp"
 #include "bridge/setpoint_stream.hpp"
 #include "bridge/supervisor.hpp"
+#include "bridge/team.hpp"
 #include "bridge/track_source.hpp"
 #include "bridge/track_table.hpp"
 #include "bridge/vehicle_link.hpp"
@@ -61,6 +62,7 @@ struct CompanionParts {
   TrackSource& tracks;
   PlannerTask& planner;
   std::vector<FlightObserver*> observers;
+  IntentTransport* intents = nullptr;  ///< to and from the team's other vehicles; null: there are none
 };
 
 /// Owns the picture of the flight; the parts outlive it. Not thread-safe: step() from one thread.
@@ -99,6 +101,7 @@ class Companion {
   CompanionParts parts_;
   Supervisor supervisor_;
   TrackTable table_;
+  std::optional<Team> team_;  // where the mission wants it and there is a transport
   SetpointStream stream_;
   VehicleState state_;
   Vec3 takeoff_point_ = Vec3::Zero();

@@ -8,6 +8,7 @@
 
 #include "bridge/clock.hpp"
 #include "bridge/companion.hpp"
+#include "bridge/dds_intents.hpp"
 #include "bridge/dds_tracks.hpp"
 #include "bridge/mavsdk_link.hpp"
 #include "config/mission.hpp"
@@ -119,10 +120,13 @@ int run(const FlyOptions& options) {
     while (!stop.stop_requested() && !link->wait_for_autopilot(1.0, stop)) {
     }
   });
-  bridge::DdsTrackReader tracks(mission.dds_domain, clock);
+  bridge::DdsNode node(mission.dds_domain);
+  bridge::DdsTrackReader tracks(node, clock);
+  std::unique_ptr<bridge::DdsIntents> intents;
+  if (mission.intents) intents = std::make_unique<bridge::DdsIntents>(node, clock);
   bridge::ThreadedPlanner planner(
       {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock);
-  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers});
+  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers, intents.get()});
   printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
                            mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
                            mission.dds_domain, options.common.seed));

@@ -393,7 +393,8 @@ TEST(HorizonPlannerAmongKnownPaths, KeepsClearOfOneThatTurns) {
   HorizonPlanner planner{HorizonSettings{}};
   const Budget budget{HorizonSettings{}.generations, Budget::Time::max()};
   const Plan straight_on = planner.plan(r, {}, 1, 0, budget, pool);
-  ASSERT_FALSE(verify({straight_on.path, {}, 0.0, r.vehicle.radius, r.volume, kInfinity, kInfinity, {&path, 1}}).free());
+  ASSERT_FALSE(
+      verify({straight_on.path, {}, 0.0, r.vehicle.radius, r.volume, kInfinity, kInfinity, {&path, 1}}).free());
   r.paths = {&path, 1};
   const Plan plan = planner.plan(r, {}, 1, 0, budget, pool);
   EXPECT_NE(plan.status, PlanStatus::kBlocked);
