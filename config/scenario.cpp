@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "config/fault_reader.hpp"
 #include "config/vehicle_reader.hpp"
 
 namespace jink::config {
@@ -16,6 +17,7 @@ constexpr Range kSize = above(0, 1e3);
 constexpr Range kAngle = within(1e6);
 constexpr std::size_t kMostObstacles = 10000;
 constexpr std::size_t kMostPoints = 10000;
+constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 
 Vec3 read_edges(const Value& value) {
   const std::vector<Value> items = value.list(3, 3);
@@ -146,6 +148,25 @@ Sensing read_sensing(const Value& value) {
   return sensing;
 }
 
+Wind read_wind(const Value& value) {
+  const Map map(value, {"mean", "gust", "gust_time"});
+  Wind wind;
+  wind.mean = map.vec3_or("mean", within(100), wind.mean);
+  wind.gust = map.number_or("gust", closed(0, 100), wind.gust);
+  wind.gust_time = map.number_or("gust_time", above(0, 1e4), wind.gust_time);
+  return wind;
+}
+
+EstimateErrors read_estimate(const Value& value) {
+  const Map map(value, {"position_noise", "velocity_noise", "drift", "drift_time"});
+  EstimateErrors errors;
+  errors.position_noise = map.number_or("position_noise", closed(0, 100), errors.position_noise);
+  errors.velocity_noise = map.number_or("velocity_noise", closed(0, 100), errors.velocity_noise);
+  errors.drift = map.number_or("drift", closed(0, 1000), errors.drift);
+  errors.drift_time = map.number_or("drift_time", above(0, 1e6), errors.drift_time);
+  return errors;
+}
+
 Vec3 read_point_in_world(const Map& map, std::string_view key, const std::optional<planner::Box>& world) {
   const Vec3 point = map.vec3(key, kCoordinate);
   for (std::size_t i = 0; world && i < 3; ++i) {
@@ -157,6 +178,38 @@ Vec3 read_point_in_world(const Map& map, std::string_view key, const std::option
   return point;
 }
 
+/// They take off from the ground below their starts, where they must not touch.
+void check_clear(const Map& map, const ScenarioVehicle& vehicle, const std::vector<ScenarioVehicle>& others) {
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const double apart = (vehicle.start - others[k].start).head<2>().norm();
+    const double needed = vehicle.vehicle.radius + others[k].vehicle.radius;
+    if (apart > needed) continue;
+    map.at("start", "")
+        .fail("is " + number_text(apart) + " m from vehicle " + std::to_string(k) +
+              " on the ground; expected more than " + number_text(needed) + " m, both radii");
+  }
+}
+
+std::vector<ScenarioVehicle> read_further(const Value& value, const Scenario& scenario,
+                                          const std::filesystem::path& file, const std::filesystem::path& vehicles) {
+  std::vector<ScenarioVehicle> all = all_vehicles(scenario);
+  for (const Value& item : value.list(0, kMostFurtherVehicles)) {
+    const Map map(item, {"start", "target", "vehicle"});
+    ScenarioVehicle further = all.front();
+    further.start = read_point_in_world(map, "start", scenario.world);
+    further.target = read_point_in_world(map, "target", scenario.world);
+    if (const auto own = map.find("vehicle")) {
+      NamedVehicle named = read_vehicle(*own, file, vehicles);
+      further.vehicle_name = std::move(named.name);
+      further.vehicle = named.limits;
+    }
+    check_clear(map, further, all);
+    all.push_back(std::move(further));
+  }
+  all.erase(all.begin());
+  return all;
+}
+
 // The contract's default: ten times as long as the straight flight, and half a minute to get going.
 double default_time_limit(const Scenario& scenario) {
   return 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
@@ -164,9 +217,16 @@ double default_time_limit(const Scenario& scenario) {
 
 }  // namespace
 
+std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
+  std::vector<ScenarioVehicle> all{{scenario.start, scenario.target, scenario.vehicle_name, scenario.vehicle}};
+  all.insert(all.end(), scenario.vehicles.begin(), scenario.vehicles.end());
+  return all;
+}
+
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles"},
+                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles",
+                 "vehicles", "wind", "estimate", "faults"},
                 "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
@@ -183,6 +243,11 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
     Shape shape = read_shape(obstacle);
     scenario.obstacles.push_back({std::move(shape), read_motion(obstacle)});
   }
+  if (const auto further = map.find("vehicles")) scenario.vehicles = read_further(*further, scenario, file, vehicles);
+  if (const auto wind = map.find("wind")) scenario.wind = read_wind(*wind);
+  if (const auto estimate = map.find("estimate")) scenario.estimate = read_estimate(*estimate);
+  if (const auto faults = map.find("faults"))
+    scenario.faults = read_faults(*faults, 1 + static_cast<int>(scenario.vehicles.size()));
   return scenario;
 }
 

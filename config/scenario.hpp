@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "config/faults.hpp"
 #include "planner/types.hpp"
 
 namespace jink::config {
@@ -76,6 +77,29 @@ struct Sensing {
   double dropout = 0.0;               ///< probability that a track is missing from a message
 };
 
+/// The same everywhere in the world.
+struct Wind {
+  Vec3 mean = Vec3::Zero();  ///< m/s, where the air goes to
+  double gust = 0.0;         ///< m/s, standard deviation per axis
+  double gust_time = 2.0;    ///< s, over which a gust dies down to 1/e
+};
+
+/// What the autopilots' estimates get wrong: standard deviations per axis.
+struct EstimateErrors {
+  double position_noise = 0.0;  ///< m
+  double velocity_noise = 0.0;  ///< m/s
+  double drift = 0.0;           ///< m, of the slow wander of the position
+  double drift_time = 20.0;     ///< s, over which it dies down to 1/e
+};
+
+/// One of several vehicles in the same world, with its own way to go.
+struct ScenarioVehicle {
+  Vec3 start = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  std::string vehicle_name;  ///< as Scenario's
+  planner::VehicleLimits vehicle;
+};
+
 struct Scenario {
   std::string name;
   Vec3 start = Vec3::Zero();
@@ -86,16 +110,26 @@ struct Scenario {
   std::optional<planner::Box> world;
   Sensing sensing;
   std::vector<Obstacle> obstacles;
+  Wind wind;
+  EstimateErrors estimate;
+  std::vector<Fault> faults;              ///< in the file's order
+  std::vector<ScenarioVehicle> vehicles;  ///< further ones, numbered from 1: the scenario's own is vehicle 0
 };
+
+/// The scenario's own vehicle, then the further ones: the index is the vehicle's number.
+[[nodiscard]] std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario);
 
 /// Reads and checks a jink-scenario/1 file. `vehicles` is the folder of vehicle files by name; empty: `vehicles/`
 /// beside the scenario's folder, then the project's own (config_folder() in config/settings.hpp).
 ///
 /// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
 /// velocity and acceleration of a linear one. Optional: time_limit, world (with both min and max), sensing and each of
-/// its keys. Checked: start and target lie in the world; a bounce starts between min and max, which may coincide only
-/// on an axis without velocity; waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds and
-/// accelerations 1e3 per axis, radius and edges 1e3, 10000 obstacles, 10000 points each.
+/// its keys, vehicles (further ones, at most 9, each with start and target, and vehicle where it is another one), wind,
+/// estimate and each of their keys, faults (a list, at most 1000; kinds and keys as in config/faults.hpp).
+/// Checked: starts and targets lie in the world, and no two starts are above each other so that the vehicles would
+/// touch on the ground; a bounce starts between min and max, which may coincide only on an axis without velocity;
+/// waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds and accelerations 1e3 per axis,
+/// radius and edges 1e3, 10000 obstacles, 10000 points each.
 ///
 /// Throws ConfigError (config/error.hpp) for anything else: unreadable file, syntax, unknown, missing or repeated key,
 /// wrong type, value out of range, wrong format, unknown vehicle.

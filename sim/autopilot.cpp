@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands, arming and what the autopilot says of itself; autopilot_flight.cpp flies.
+// Commands, arming and what the autopilot says of itself; autopilot_flight.cpp flies, autopilot_failsafe.cpp decides
+// what becomes of a flight that lacks something, autopilot_faults.cpp holds the faults.
 #include "sim/autopilot.hpp"
 
 #include <cmath>
@@ -24,19 +25,6 @@ constexpr std::uint8_t kStateActive = 4;
 constexpr std::uint8_t kStateCritical = 5;
 constexpr std::uint8_t kStateTermination = 8;
 
-bool is_manual(FlightMode mode) {
-  switch (mode) {
-    case FlightMode::kManual:
-    case FlightMode::kAltitude:
-    case FlightMode::kPosition:
-    case FlightMode::kAcro:
-    case FlightMode::kStabilized:
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool forbids_arming(FlightMode mode) {
   return mode == FlightMode::kLand || mode == FlightMode::kReturn;
 }
@@ -54,10 +42,25 @@ Vec3 start_position(const AutopilotOptions& options) {
 
 }  // namespace
 
+bool is_manual(FlightMode mode) {
+  switch (mode) {
+    case FlightMode::kManual:
+    case FlightMode::kAltitude:
+    case FlightMode::kPosition:
+    case FlightMode::kAcro:
+    case FlightMode::kStabilized:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Autopilot::Autopilot(const AutopilotOptions& options)
     : options_(checked(options)),
       parameters_(options.limits, options.system_id),
       model_(options.limits, start_position(options), options.ground_height, options.yaw, options.cascade),
+      wind_(options.wind, options.seed),
+      estimator_(options.estimate, options.seed, model_.motion()),
       home_(start_position(options).x(), start_position(options).y(), options.ground_height),
       hold_position_(start_position(options)) {
   if (!options.airborne) return;
@@ -72,7 +75,7 @@ Autopilot::Autopilot(const AutopilotOptions& options)
 
 Result Autopilot::arm(bool force) {
   if (armed_) return Result::kAccepted;
-  const bool able = !crashed_ && landed_ && ready();
+  const bool able = !crashed_ && landed_ && ready() && !refuses_arming_;
   if (!able || (!force && !prearm_ok())) {
     report(Severity::kCritical, "Arming denied: Resolve system health failures first");
     return Result::kTemporarilyRejected;
@@ -80,7 +83,8 @@ Result Autopilot::arm(bool force) {
   armed_ = true;
   armed_at_ = time();
   has_flown_ = false;
-  home_ = true_motion().position;
+  home_ = estimated_motion().position;
+  armed_battery_ = reported_battery_ = battery_level();
   phase_ = Phase::kLanded;
   model_.set_motors(Motors::kIdle);
   enter_active_mode();
@@ -104,6 +108,8 @@ void Autopilot::disarm_now() {
   failsafe_.reset();
   phase_ = Phase::kLanded;
   settled_since_.reset();
+  battery_acts_at_ = planner::kInfinity;
+  battery_taken_over_ = home_was_set_ = false;
   intended_mode_ = mode_after_disarm_;
   model_.set_motors(Motors::kOff);
 }
@@ -134,14 +140,14 @@ Result Autopilot::set_mode(unsigned main_mode, unsigned sub_mode) {
   }
   const auto mode = static_cast<FlightMode>(main_mode << 16U);
   if (mode == FlightMode::kOffboard) {
-    if (armed_ && !stream_live()) {
+    if (armed_ && (!stream_live() || !position_valid() || refuses_offboard_)) {
       report(Severity::kCritical, "Switching to Offboard is currently not available");
       return Result::kTemporarilyRejected;
     }
     return change_mode(mode);
   }
   if (main_mode <= 0xFFU && is_manual(mode)) {
-    if (!armed_) return change_mode(mode);
+    if (!armed_ || remote_control_) return change_mode(mode);
     report(Severity::kCritical, "Switching to a manual mode is currently not available: no manual control");
     return Result::kTemporarilyRejected;
   }
@@ -149,6 +155,14 @@ Result Autopilot::set_mode(unsigned main_mode, unsigned sub_mode) {
 }
 
 Result Autopilot::change_mode(FlightMode mode) {
+  // OFFBOARD is checked before; of the modes flown by hand only this one needs to know where it is.
+  const bool by_hand = is_manual(mode) && mode != FlightMode::kPosition;
+  if (armed_ && !position_valid() && !by_hand && mode != FlightMode::kOffboard) {
+    report(Severity::kCritical, "Switching to the requested mode is currently not available: no valid position");
+    return Result::kTemporarilyRejected;
+  }
+  // Whoever changes the mode in a battery's failsafe takes the flight over.
+  if (battery_failsafe()) battery_taken_over_ = true;
   intended_mode_ = mode;
   if (!forbids_arming(mode)) mode_after_disarm_ = mode;
   failsafe_.reset();
@@ -163,8 +177,9 @@ Result Autopilot::takeoff(std::optional<double> height) {
 }
 
 Result Autopilot::land() {
-  if (armed_) report(Severity::kInfo, "Landing at current position");
-  return change_mode(FlightMode::kLand);
+  const Result result = change_mode(FlightMode::kLand);
+  if (armed_ && result == Result::kAccepted) report(Severity::kInfo, "Landing at current position");
+  return result;
 }
 
 Result Autopilot::hold() {
@@ -177,14 +192,15 @@ Result Autopilot::return_home() {
 
 Result Autopilot::reposition(const Vec3& position) {
   if (!armed_ || landed_ || !position.allFinite()) return Result::kTemporarilyRejected;
-  change_mode(FlightMode::kHold);
-  hold_position_ = position;
-  return Result::kAccepted;
+  const Result result = change_mode(FlightMode::kHold);
+  if (result == Result::kAccepted) hold_position_ = position;
+  return result;
 }
 
 Result Autopilot::set_home(const Vec3& position) {
   if (!position.allFinite()) return Result::kDenied;
   home_ = position;
+  home_was_set_ = true;
   return Result::kAccepted;
 }
 
@@ -209,9 +225,10 @@ bool Autopilot::stream_live() const {
 }
 
 bool Autopilot::prearm_ok() const {
-  if (!ready() || crashed_) return false;
-  if (is_manual(mode())) return false;
-  if (mode() == FlightMode::kOffboard) return stream_live();
+  if (!ready() || crashed_ || (refuses_arming_ && !armed_)) return false;
+  if (is_manual(mode())) return remote_control_;
+  if (!position_valid()) return false;
+  if (mode() == FlightMode::kOffboard) return stream_live() && (armed_ || !refuses_offboard_);
   return armed_ || !forbids_arming(mode());
 }
 

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/estimator.hpp"
 #include "sim/parameters.hpp"
 #include "sim/vehicle_model.hpp"
+#include "sim/wind.hpp"
 
 namespace jink::sim {
 
@@ -27,6 +29,9 @@ enum class FlightMode : std::uint32_t {
   kStabilized = 0x00070000,
 };
 
+/// Flown by hand: it needs a remote control.
+[[nodiscard]] bool is_manual(FlightMode mode);
+
 /// MAV_RESULT's values.
 enum class Result : std::uint8_t {
   kAccepted = 0,
@@ -38,6 +43,9 @@ enum class Result : std::uint8_t {
 
 /// MAV_LANDED_STATE's values.
 enum class LandedState : std::uint8_t { kOnGround = 1, kInAir = 2, kTakeoff = 3, kLanding = 4 };
+
+/// MAV_BATTERY_CHARGE_STATE's values that are in use.
+enum class BatteryLevel : std::uint8_t { kUnknown = 0, kOk = 1, kLow = 2, kCritical = 3, kEmergency = 4 };
 
 /// What HEARTBEAT carries, in MAVLink's values.
 struct Heartbeat {
@@ -63,18 +71,26 @@ struct AutopilotOptions {
   double ready_delay = 4.3;  ///< from start until it may be armed, PX4's SITL; 0 and less: at once
   int system_id = 1;
   Cascade cascade{};
+  Wind wind{};                ///< none: exactly as without a wind
+  EstimateErrors estimate{};  ///< none: what it believes is the truth, bit by bit
+  std::uint64_t seed = 1;     ///< of gusts and errors
 };
 
 /// Not thread-safe: one thread steps and commands it. Commands act at once, setpoints with the next step.
 class Autopilot {
  public:
-  /// Throws std::invalid_argument for unusable limits or a position or height that is not finite.
+  /// Throws std::invalid_argument for unusable limits, a position or height that is not finite, or a wind or errors
+  /// that are negative or not finite.
   explicit Autopilot(const AutopilotOptions& options);
 
   /// Advances by VehicleModel::kStep.
   void step();
-  /// Seconds since it was started.
+  /// Seconds since the simulation began: no reboot sets it back.
   [[nodiscard]] double time() const { return static_cast<double>(steps_) * VehicleModel::kStep; }
+  /// Seconds since it last booted: what its messages tell.
+  [[nodiscard]] double boot_time() const { return static_cast<double>(steps_ - boot_step_) * VehicleModel::kStep; }
+  /// How often it was rebooted.
+  [[nodiscard]] int reboots() const { return reboots_; }
 
   // Commands: MAV_RESULT as PX4 answers it.
   Result arm(bool force = false);
@@ -99,9 +115,33 @@ class Autopilot {
   /// The true world says that it hit something: motors off for good, it falls.
   void crash();
 
+  // Faults and the pilot, as they befall the vehicle.
+  /// Cuts satellite navigation, or gives it back. After EKF2_NOAID_TOUT without it no position is valid.
+  void set_gps(bool available);
+  /// The estimate moves by `by` (m, finite) at once and counts a reset; the vehicle stays, then moves as its controller
+  /// follows the estimate. Its own setpoints move along, an OFFBOARD position does not.
+  void jump_estimate(const Vec3& by);
+  /// 0 to 1, clamped; NaN: not known. Full at the start, and nothing but this drains it.
+  void set_battery(double remaining);
+  /// The motors stop, in the air it falls. It boots anew with its parameters, and where it is its local frame begins.
+  void reboot();
+  /// A pilot with a remote control, sticks centred from now on, switches the mode: manual ones are possible then.
+  Result pilot_mode(FlightMode mode);
+  /// As a failed check before take-off does: the health bit says it, and arming is refused even by force.
+  void refuse_arming(bool on) { refuses_arming_ = on; }
+  /// As an OFFBOARD that cannot run does. One that flies goes on, but does not come back after a failsafe.
+  void refuse_offboard(bool on) { refuses_offboard_ = on; }
+
+  /// In the simulation's frame.
   [[nodiscard]] const Motion& true_motion() const { return model_.motion(); }
-  /// What the vehicle believes and reports: the truth, as long as no estimator is modelled.
-  [[nodiscard]] const Motion& estimated_motion() const { return model_.motion(); }
+  /// What the vehicle believes and reports, in its local frame.
+  [[nodiscard]] const Motion& estimated_motion() const { return estimator_.motion(); }
+  /// Origin of the local frame, reset counter, validity.
+  [[nodiscard]] const Estimator& estimator() const { return estimator_; }
+  [[nodiscard]] bool position_valid() const { return estimator_.position_valid(); }
+  /// 0 to 1; NaN: not known.
+  [[nodiscard]] double battery() const { return battery_; }
+  [[nodiscard]] BatteryLevel battery_level() const;
   [[nodiscard]] const VehicleModel& model() const { return model_; }
   [[nodiscard]] Parameters& parameters() { return parameters_; }
   [[nodiscard]] const Parameters& parameters() const { return parameters_; }
@@ -118,7 +158,11 @@ class Autopilot {
   [[nodiscard]] bool offboard_active() const { return armed_ && mode() == FlightMode::kOffboard; }
   /// A valid setpoint came within the last COM_OF_LOSS_T.
   [[nodiscard]] bool stream_live() const;
-  [[nodiscard]] bool ready() const { return time() >= options_.ready_delay; }
+  [[nodiscard]] bool ready() const { return boot_time() >= options_.ready_delay; }
+  /// The ground's z in the local frame.
+  [[nodiscard]] double local_ground() const { return options_.ground_height - estimator_.origin().z(); }
+  /// Of the truth above the ground: the rangefinder's.
+  [[nodiscard]] double height_above_ground() const { return true_motion().position.z() - options_.ground_height; }
   /// The health bit of SYS_STATUS: it could be armed, or go on flying, in this mode.
   [[nodiscard]] bool prearm_ok() const;
   [[nodiscard]] LandedState landed_state() const;
@@ -137,7 +181,14 @@ class Autopilot {
   void enter_active_mode();
   void disarm_now();
 
+  // autopilot_failsafe.cpp
   void update_failsafe();
+  void update_battery();
+  [[nodiscard]] bool offboard_runs() const;
+  [[nodiscard]] std::optional<FlightMode> mode_fallback() const;
+  [[nodiscard]] std::optional<FlightMode> battery_failsafe() const;
+
+  void update_home();
   void update_takeoff();
   void update_landed();
   void update_auto_disarm();
@@ -150,13 +201,18 @@ class Autopilot {
   [[nodiscard]] Setpoint guide();
   [[nodiscard]] Setpoint guide_hold() const;
   [[nodiscard]] Setpoint guide_descent(double speed) const;
+  [[nodiscard]] Setpoint guide_manual() const;
   [[nodiscard]] Setpoint guide_return();
   [[nodiscard]] double landing_speed() const;
 
   AutopilotOptions options_;
   Parameters parameters_;
   VehicleModel model_;
+  WindModel wind_;
+  Estimator estimator_;
   std::int64_t steps_ = 0;
+  std::int64_t boot_step_ = 0;
+  int reboots_ = 0;
 
   Setpoint offboard_;
   std::optional<double> last_offboard_;
@@ -168,6 +224,10 @@ class Autopilot {
   double ramp_started_ = 0.0;
   double landed_at_ = 0.0;
   std::optional<double> settled_since_;  ///< on the ground and told to descend
+  double battery_ = 1.0;
+  double battery_acts_at_ = planner::kInfinity;        ///< from when on its failsafe's own mode flies; HOLD before
+  BatteryLevel reported_battery_ = BatteryLevel::kOk;  ///< the worst in this flight
+  BatteryLevel armed_battery_ = BatteryLevel::kOk;     ///< known when it was armed: not acted upon
   std::vector<StatusText> texts_;
 
   FlightMode intended_mode_ = FlightMode::kHold;
@@ -182,6 +242,11 @@ class Autopilot {
   bool return_climbed_ = false;
   bool return_arrived_ = false;
   bool ready_reported_ = false;
+  bool home_was_set_ = false;        ///< by command, since it was last disarmed
+  bool battery_taken_over_ = false;  ///< by a change of mode during its failsafe
+  bool remote_control_ = false;      ///< a pilot has used one
+  bool refuses_arming_ = false;
+  bool refuses_offboard_ = false;
 };
 
 }  // namespace jink::sim

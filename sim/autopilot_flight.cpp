@@ -22,33 +22,21 @@ constexpr double kLandingVelocity = 0.3;     ///< m/s down: less asked for in OF
 constexpr double kFailsafeDescent = 0.7;     ///< m/s, the sink without manual control
 constexpr double kBrakingTime = 0.8;         ///< s: HOLD stops where it would be after that at its present speed
 constexpr double kReturnReached = 0.5;       ///< m, of the return height and of home
+constexpr double kMicroseconds = 1e6;        ///< in a second
 constexpr double kFastDescentHeight = 10.0;  ///< m, above which LAND sinks at MPC_Z_VEL_MAX_DN
 constexpr double kSlowDescentHeight = 5.0;   ///< m, MPC_LAND_SPEED
 constexpr double kCrawlHeight = 0.5;         ///< m, MPC_LAND_CRWL
 
-FlightMode failsafe_mode(std::int32_t com_obl_rc_act) {
-  switch (com_obl_rc_act) {
-    case 1:
-    case 2:
-      return FlightMode::kAltitude;
-    case 3:
-      return FlightMode::kReturn;
-    case 4:
-      return FlightMode::kLand;
-    case 5:
-      return FlightMode::kHold;
-    default:
-      return FlightMode::kPosition;
-  }
-}
-
-bool cuts_motors(std::int32_t com_obl_rc_act) {
-  return com_obl_rc_act == 6 || com_obl_rc_act == 7;
-}
-
 /// The value at x on the line through (x0, y0) and (x1, y1), x0 < x1, constant beyond both.
 double interpolate(double x, double x0, double y0, double x1, double y1) {
   return y0 + (y1 - y0) * std::clamp((x - x0) / (x1 - x0), 0.0, 1.0);
+}
+
+/// Level: nothing holds the place, the wind takes it along.
+void float_away(Setpoint& setpoint) {
+  setpoint.position.head<2>().setConstant(std::numeric_limits<double>::quiet_NaN());
+  setpoint.velocity.head<2>().setConstant(std::numeric_limits<double>::quiet_NaN());
+  setpoint.acceleration.head<2>().setZero();
 }
 
 }  // namespace
@@ -59,6 +47,7 @@ void Autopilot::step() {
     ready_reported_ = true;
     report(Severity::kInfo, "Ready for takeoff!");
   }
+  update_battery();
   if (armed_) {
     update_failsafe();
     if (guided_mode_ != mode()) enter_active_mode();
@@ -69,32 +58,26 @@ void Autopilot::step() {
     model_.set_bounds(bounds());
     model_.set_setpoint(active_setpoint_);
   }
+  wind_.step();
+  model_.set_wind(wind_.velocity());
+  if (!estimator_.exact()) model_.set_estimate(estimated_motion().position, estimated_motion().velocity);
   model_.step();
+  estimator_.step(model_.motion(), parameters_.integer("EKF2_NOAID_TOUT") / kMicroseconds);
   update_landed();
   if (armed_) update_auto_disarm();
+  update_home();
+}
+
+/// PX4 takes home where it is armed, and before that wherever it stands.
+void Autopilot::update_home() {
+  if (!armed_ && landed_ && !home_was_set_ && position_valid()) home_ = estimated_motion().position;
 }
 
 void Autopilot::enter_active_mode() {
   guided_mode_ = mode();
   hold_position_ = estimated_motion().position + kBrakingTime * estimated_motion().velocity;
-  hold_position_.z() = std::max(hold_position_.z(), options_.ground_height);
+  hold_position_.z() = std::max(hold_position_.z(), local_ground());
   return_climbed_ = return_arrived_ = false;
-}
-
-/// The intended mode stays OFFBOARD, so that the vehicle goes back to it by itself when the stream does.
-void Autopilot::update_failsafe() {
-  if (intended_mode_ != FlightMode::kOffboard || stream_live()) {
-    failsafe_.reset();
-    return;
-  }
-  if (failsafe_) return;
-  report(Severity::kCritical, "Failsafe activated");
-  const auto action = parameters_.integer("COM_OBL_RC_ACT");
-  if (cuts_motors(action)) {
-    disarm_now();
-    return;
-  }
-  failsafe_ = failsafe_mode(action);
 }
 
 bool Autopilot::takeoff_wanted() const {
@@ -161,8 +144,21 @@ Setpoint Autopilot::guide() {
     case FlightMode::kHold:
       return guide_hold();
     default:
-      return guide_descent(kFailsafeDescent);  // a manual mode with nobody at the sticks
+      return guide_manual();
   }
+}
+
+/// Sticks centred; without a remote control PX4 sinks.
+Setpoint Autopilot::guide_manual() const {
+  if (!remote_control_) return guide_descent(kFailsafeDescent);
+  Setpoint setpoint = guide_hold();
+  if (mode() == FlightMode::kPosition) return setpoint;
+  float_away(setpoint);
+  if (mode() == FlightMode::kAltitude) return setpoint;
+  // Level and with the thrust of hover: nothing holds anything.
+  setpoint.position.z() = setpoint.velocity.z() = std::numeric_limits<double>::quiet_NaN();
+  setpoint.acceleration.z() = 0.0;
+  return setpoint;
 }
 
 /// Keeps the place where it comes to rest.
@@ -177,6 +173,7 @@ Setpoint Autopilot::guide_descent(double speed) const {
   Setpoint setpoint;
   setpoint.position.head<2>() = hold_position_.head<2>();
   setpoint.velocity = {0.0, 0.0, -speed};
+  if (!position_valid() || mode() == FlightMode::kAltitude) float_away(setpoint);
   return setpoint;
 }
 
@@ -201,7 +198,7 @@ Setpoint Autopilot::guide_return() {
 }
 
 double Autopilot::landing_speed() const {
-  const double height = estimated_motion().position.z() - options_.ground_height;
+  const double height = height_above_ground();
   const double fast = parameters_.real("MPC_Z_VEL_MAX_DN");
   const double slow = std::min(parameters_.real("MPC_LAND_SPEED"), fast);
   const double crawl = std::min(parameters_.real("MPC_LAND_CRWL"), slow);
@@ -218,7 +215,7 @@ void Autopilot::update_landed() {
   const double now = time();
   const bool flying = phase_ != Phase::kLanded;
   if (landed_) {
-    const bool risen = estimated_motion().position.z() > options_.ground_height + kTakeoffDetectionHeight;
+    const bool risen = height_above_ground() > kTakeoffDetectionHeight;
     if (flying && risen && now - ramp_started_ >= kTakeoffDetection) {
       landed_ = false;
       has_flown_ = true;

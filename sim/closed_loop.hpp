@@ -9,17 +9,10 @@
 #include "bridge/companion.hpp"
 #include "config/scenario.hpp"
 #include "config/settings.hpp"
+#include "sim/truth.hpp"
 #include "sim/world.hpp"
 
 namespace jink::sim {
-
-/// Who wants to know the truth. Times are scenario time.
-class TruthObserver {
- public:
-  virtual ~TruthObserver() = default;
-  /// The vehicle's true motion and the world that it is in, every 20 ms.
-  virtual void on_truth(double t, const Vec3& position, const Vec3& velocity, const World& world) = 0;
-};
 
 struct ClosedLoopOptions {
   std::uint64_t seed = 1;
@@ -35,7 +28,9 @@ struct ClosedLoopResult {
 };
 
 /// Flies from rest in the air at `start`, t = 0, to the target, until it is reached, something is hit, the world is
-/// left or the time limit passes. Bit-identical for the same arguments at any thread count.
+/// left or the time limit passes. The scenario's faults happen on the way, each beginning and end an event `fault` for
+/// the flight observers; further vehicles of the scenario are not there. Bit-identical for the same arguments at any
+/// thread count.
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options);
 

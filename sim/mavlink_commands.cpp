@@ -58,7 +58,11 @@ void MavlinkEndpoint::Impl::handle_set_mode(MavlinkLink& link, const mavlink_mes
 void MavlinkEndpoint::Impl::run_command(MavlinkLink& link, const Command& command) {
   // PX4 takes note of the wish, then says how it went.
   if (command.id == MAV_CMD_DO_SET_MODE) acknowledge(link, command, Result::kAccepted);
-  acknowledge(link, command, execute(link, command));
+  const Result result = execute(link, command);
+  acknowledge(link, command, result);
+  // Not without its answer.
+  const bool reboots = command.id == MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN && command.param1 == 1.0F;
+  if (reboots && result == Result::kAccepted) autopilot_.reboot();
 }
 
 void MavlinkEndpoint::Impl::acknowledge(MavlinkLink& link, const Command& command, Result result) {
@@ -98,8 +102,7 @@ Result MavlinkEndpoint::Impl::execute(MavlinkLink& link, const Command& command)
     case MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
       return request_message(link, MAVLINK_MSG_ID_AUTOPILOT_VERSION);
     case MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN:
-      // On the ground it is accepted and nothing happens: the simulator is restarted from outside.
-      return autopilot_.landed() ? Result::kAccepted : Result::kDenied;
+      return autopilot_.landed() && !autopilot_.armed() ? Result::kAccepted : Result::kDenied;
     default:
       return Result::kUnsupported;
   }
@@ -115,7 +118,7 @@ Result MavlinkEndpoint::Impl::arm_or_disarm(const Command& command) {
 Result MavlinkEndpoint::Impl::take_off(const Command& command) {
   if (!std::isfinite(command.param7)) return autopilot_.takeoff();
   if (std::abs(static_cast<double>(command.param7)) > kMaxAltitude) return Result::kDenied;
-  return autopilot_.takeoff(static_cast<double>(command.param7) - frame_.origin().altitude_m);
+  return autopilot_.takeoff(static_cast<double>(command.param7) - to_global(Vec3::Zero()).altitude_m);
 }
 
 Result MavlinkEndpoint::Impl::reposition(const Command& command) {
@@ -131,9 +134,9 @@ Result MavlinkEndpoint::Impl::reposition(const Command& command) {
     target.latitude_deg = command.latitude_deg;
     target.longitude_deg = command.longitude_deg;
   }
-  Vec3 position = frame_.to_enu(target);
-  position.z() =
-      std::isfinite(command.param7) ? static_cast<double>(command.param7) - frame_.origin().altitude_m : here.z();
+  if (std::isfinite(command.param7)) target.altitude_m = static_cast<double>(command.param7);
+  Vec3 position = to_local(target);
+  if (!std::isfinite(command.param7)) position.z() = here.z();
   return autopilot_.reposition(position);
 }
 
@@ -145,7 +148,7 @@ Result MavlinkEndpoint::Impl::set_home(const Command& command) {
     return Result::kDenied;
   }
   return autopilot_.set_home(
-      frame_.to_enu({command.latitude_deg, command.longitude_deg, static_cast<double>(command.param7)}));
+      to_local({command.latitude_deg, command.longitude_deg, static_cast<double>(command.param7)}));
 }
 
 Result MavlinkEndpoint::Impl::set_message_interval(MavlinkLink& link, const Command& command) {

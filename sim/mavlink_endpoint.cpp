@@ -21,6 +21,7 @@ constexpr int kGroundLocalPort = 18570;
 constexpr int kGroundRemotePort = 14550;
 
 constexpr double kReadyDelay = 4.3;        ///< s, of PX4's SITL: the measure of the start-up times
+constexpr double kLinkUp = 0.3;            ///< s after its start, when it begins to listen
 constexpr std::size_t kListedPerPoll = 2;  ///< parameters of a list: 500 a second, as a list at full rate
 constexpr std::size_t kTextChunk = 50;     ///< characters that STATUSTEXT holds
 
@@ -57,6 +58,10 @@ void MavlinkEndpoint::poll(double now) {
   impl_->poll(now);
 }
 
+void MavlinkEndpoint::impair(const LinkImpairment& impairment) {
+  impl_->impair(impairment);
+}
+
 std::uint16_t MavlinkEndpoint::companion_port() const {
   return impl_->links().front().local_port();
 }
@@ -71,6 +76,7 @@ EndpointCounters MavlinkEndpoint::counters() const {
     sum.received += link.received();
     sum.malformed += link.malformed();
   }
+  sum.setpoints = impl_->setpoints();
   return sum;
 }
 
@@ -81,7 +87,8 @@ MavlinkEndpoint::Impl::Impl(Autopilot& autopilot, const EndpointOptions& options
       system_id_(static_cast<std::uint8_t>(options.instance + 1)),
       start_factor_(std::clamp(autopilot.options().ready_delay / kReadyDelay, 0.0, 1.0)) {
   const auto open = [&](std::uint16_t local, std::uint16_t remote) {
-    links_.emplace_back(udp_address(options_.address, local), udp_address(options_.address, remote), system_id_);
+    links_.emplace_back(udp_address(options_.address, local), udp_address(options_.address, remote), system_id_,
+                        options_.seed);
     reset_streams(links_.back());
   };
   open(port_or(options_.companion_local_port, kCompanionLocalPort + options_.instance),
@@ -93,14 +100,51 @@ MavlinkEndpoint::Impl::Impl(Autopilot& autopilot, const EndpointOptions& options
 
 void MavlinkEndpoint::Impl::poll(double now) {
   now_ = now;
+  watch_reboots();
+  const bool link_up = reboots_ == 0 || now_ - boot_ >= kLinkUp * start_factor_;
   for (MavlinkLink& link : links_) {
-    link.receive([&](const mavlink_message_t& message) { handle(link, message); });
+    link.advance(now_);
+    link.receive([&](const mavlink_message_t& message) {
+      if (link_up) handle(link, message);
+    });
   }
+  watch_reboots();  // a command may ask for one
+  watch_companion();
   for (MavlinkLink& link : links_) {
     send_streams(link);
     send_listed_parameters(link);
   }
   send_status_texts();
+}
+
+/// After a reboot everything begins anew, rates and clocks too.
+void MavlinkEndpoint::Impl::watch_reboots() {
+  if (reboots_ == autopilot_.reboots()) return;
+  reboots_ = autopilot_.reboots();
+  boot_ = now_;
+  companion_heard_.reset();
+  companion_lost_ = false;
+  for (MavlinkLink& link : links_) {
+    reset_streams(link);
+    link.ground_station = link.listing_parameters = false;
+  }
+}
+
+void MavlinkEndpoint::Impl::handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message) {
+  const auto type = mavlink_msg_heartbeat_get_type(&message);
+  if (type == MAV_TYPE_GCS) link.ground_station = true;
+  if (type != MAV_TYPE_ONBOARD_CONTROLLER) return;
+  companion_heard_ = now_;
+  if (companion_lost_) autopilot_.report(Severity::kInfo, "Onboard controller regained");
+  companion_lost_ = false;
+}
+
+/// A text, and nothing else: the flight depends on the setpoints alone.
+void MavlinkEndpoint::Impl::watch_companion() {
+  if (!companion_heard_ || companion_lost_) return;
+  if (now_ - *companion_heard_ < autopilot_.parameters().real("COM_OBC_LOSS_T")) return;
+  companion_lost_ = true;
+  autopilot_.report(Severity::kCritical, "Connection to mission computer lost");
 }
 
 /// Commands and parameters are for one system; a component of 0 means all of its components.
@@ -111,8 +155,7 @@ bool MavlinkEndpoint::Impl::for_us(std::uint8_t system, std::uint8_t component) 
 void MavlinkEndpoint::Impl::handle(MavlinkLink& link, const mavlink_message_t& message) {
   switch (message.msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:
-      if (mavlink_msg_heartbeat_get_type(&message) == MAV_TYPE_GCS) link.ground_station = true;
-      break;
+      return handle_heartbeat(link, message);
     case MAVLINK_MSG_ID_COMMAND_LONG:
       return handle_command_long(link, message);
     case MAVLINK_MSG_ID_COMMAND_INT:
@@ -144,6 +187,7 @@ void MavlinkEndpoint::Impl::handle_position_target(const mavlink_message_t& mess
   mavlink_msg_set_position_target_local_ned_decode(&message, &target);
   const bool broadcast = target.target_system == 0 && target.target_component == MAV_COMP_ID_ALL;
   if (!broadcast && !for_us(target.target_system, target.target_component)) return;
+  ++setpoints_;
   const bool body = target.coordinate_frame == MAV_FRAME_BODY_NED;
   if (!body && target.coordinate_frame != MAV_FRAME_LOCAL_NED) {
     autopilot_.report(Severity::kCritical, "SET_POSITION_TARGET_LOCAL_NED coordinate frame " +

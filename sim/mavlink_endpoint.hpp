@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sim/autopilot.hpp"
+#include "sim/impairment.hpp"
 #include "sim/local_frame.hpp"
 
 namespace jink::sim {
@@ -24,11 +25,13 @@ struct EndpointOptions {
   std::optional<std::uint16_t> ground_remote_port{};
   Geodetic origin = kSitlOrigin;                           ///< of the local frame
   std::uint64_t unix_time_at_start_us = 1767225600000000;  ///< for SYSTEM_TIME: 1 January 2026
+  std::uint64_t seed = 1;                                  ///< of what befalls packets on an impaired link
 };
 
 struct EndpointCounters {
   std::uint64_t received = 0;   ///< messages
   std::uint64_t malformed = 0;  ///< datagrams with something in them that is no MAVLink message
+  std::uint64_t setpoints = 0;  ///< for this autopilot, usable or not
 };
 
 /// Serves an autopilot that outlives it. Never blocks. Not thread-safe: one thread polls it and steps the autopilot.
@@ -43,6 +46,8 @@ class MavlinkEndpoint {
 
   /// Handles all that has arrived and sends what is due at `now`, the autopilot's time: call it at 250 Hz of that.
   void poll(double now);
+  /// How bad the companion's link is from now on; the ground station's stays as it is.
+  void impair(const LinkImpairment& impairment);
 
   [[nodiscard]] std::uint16_t companion_port() const;
   /// 0 without a ground link.

@@ -25,11 +25,16 @@ struct Command {
   float param7 = 0;
 };
 
+/// In percent, as MAVLink has it; -1: not known.
+[[nodiscard]] std::int8_t battery_percent(double remaining);
+
 class MavlinkEndpoint::Impl {
  public:
   Impl(Autopilot& autopilot, const EndpointOptions& options);
   void poll(double now);
+  void impair(const LinkImpairment& impairment) { links_.front().impair(impairment); }
   [[nodiscard]] const std::vector<MavlinkLink>& links() const { return links_; }
+  [[nodiscard]] std::uint64_t setpoints() const { return setpoints_; }
 
   /// One row of the table of what it can send.
   struct MessageKind {
@@ -42,6 +47,9 @@ class MavlinkEndpoint::Impl {
  private:
   // mavlink_endpoint.cpp
   void handle(MavlinkLink& link, const mavlink_message_t& message);
+  void handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message);
+  void watch_companion();
+  void watch_reboots();
   void handle_position_target(const mavlink_message_t& message);
   void handle_parameter_read(MavlinkLink& link, const mavlink_message_t& message);
   void handle_parameter_set(const mavlink_message_t& message);
@@ -76,6 +84,9 @@ class MavlinkEndpoint::Impl {
   void send_streams(MavlinkLink& link);
   [[nodiscard]] std::uint32_t boot_ms() const;
   [[nodiscard]] std::uint64_t boot_us() const;
+  /// Of a point in the autopilot's local frame, and back.
+  [[nodiscard]] Geodetic to_global(const Vec3& local) const;
+  [[nodiscard]] Vec3 to_local(const Geodetic& place) const;
   [[nodiscard]] Geodetic global_position() const;
 
   void send_heartbeat(MavlinkLink& link);
@@ -116,6 +127,11 @@ class MavlinkEndpoint::Impl {
   LocalFrame frame_;
   std::uint8_t system_id_;
   double now_ = 0.0;
+  std::uint64_t setpoints_ = 0;
+  double boot_ = 0.0;                      ///< when the autopilot booted, on the clock of `now_`
+  int reboots_ = 0;                        ///< that the links know of
+  std::optional<double> companion_heard_;  ///< its last heartbeat
+  bool companion_lost_ = false;
   double start_factor_;  ///< of PX4's start-up times: less when the autopilot is ready sooner
   std::uint16_t next_text_id_ = 1;
   std::uint32_t next_ping_ = 0;

@@ -8,8 +8,10 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "sim/impairment.hpp"
 #include "sim/udp_socket.hpp"
 
 namespace jink::sim {
@@ -22,10 +24,15 @@ struct Stream {
 
 class MavlinkLink {
  public:
-  /// Throws as UdpSocket does.
-  MavlinkLink(const UdpAddress& local, const UdpAddress& remote, std::uint8_t system_id);
+  /// Throws as UdpSocket does. `seed` is that of what befalls packets while the link is impaired.
+  MavlinkLink(const UdpAddress& local, const UdpAddress& remote, std::uint8_t system_id, std::uint64_t seed = 1);
 
   [[nodiscard]] std::uint16_t local_port() const { return socket_.local_port(); }
+
+  /// How bad the link is from now on, both ways.
+  void impair(const LinkImpairment& impairment);
+  /// Goes on to `now`, the endpoint's time: what was held back on its way out and is due goes out.
+  void advance(double now);
 
   /// Frames `payload` with its generated encode function and sends it.
   template <typename Payload>
@@ -49,13 +56,24 @@ class MavlinkLink {
   bool listing_parameters = false;
 
  private:
+  /// A datagram on its way; `from` is of those that come in.
+  struct Datagram {
+    std::vector<std::uint8_t> bytes;
+    UdpAddress from{};
+  };
+
   void send_frame(const mavlink_message_t& message);
-  [[nodiscard]] std::size_t parse(std::size_t length, const std::function<void(const mavlink_message_t&)>& handle,
-                                  bool& clean);
+  void take(std::span<const std::uint8_t> datagram, const UdpAddress& from,
+            const std::function<void(const mavlink_message_t&)>& handle);
+  [[nodiscard]] std::size_t parse(std::span<const std::uint8_t> datagram,
+                                  const std::function<void(const mavlink_message_t&)>& handle, bool& clean);
 
   UdpSocket socket_;
   UdpAddress remote_;
   std::uint8_t system_id_;
+  double now_ = 0.0;
+  ImpairedChannel<Datagram> up_;
+  ImpairedChannel<Datagram> down_;
   mavlink_status_t transmit_{};
   mavlink_status_t parser_{};
   mavlink_message_t partial_{};

@@ -2,6 +2,7 @@
 // The messages that stand for raw sensors and actuators: noise-free, from the estimated motion.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/mavlink_endpoint_impl.hpp"
 
@@ -21,6 +22,10 @@ double pressure_hpa(double altitude_m) {
 }
 
 }  // namespace
+
+std::int8_t battery_percent(double remaining) {
+  return std::isnan(remaining) ? std::int8_t{-1} : static_cast<std::int8_t>(std::lround(remaining * 100.0));
+}
 
 double MavlinkEndpoint::Impl::throttle() const {
   const VehicleModel& model = autopilot_.model();
@@ -56,6 +61,14 @@ void MavlinkEndpoint::Impl::send_highres_imu(MavlinkLink& link) {
 }
 
 void MavlinkEndpoint::Impl::send_gps_raw(MavlinkLink& link) {
+  if (!autopilot_.estimator().gps()) {
+    mavlink_gps_raw_int_t nothing{};
+    nothing.time_usec = boot_us();
+    nothing.fix_type = GPS_FIX_TYPE_NO_FIX;
+    nothing.eph = nothing.epv = nothing.vel = nothing.cog = std::numeric_limits<std::uint16_t>::max();
+    link.send(mavlink_msg_gps_raw_int_encode_status, nothing);
+    return;
+  }
   const Geodetic place = global_position();
   const Vec3 velocity_ned = swap_enu_ned(autopilot_.estimated_motion().velocity);
   const double course_deg = std::atan2(velocity_ned.y(), velocity_ned.x()) / kDegree;
@@ -97,8 +110,8 @@ void MavlinkEndpoint::Impl::send_battery(MavlinkLink& link) {
   for (std::size_t cell = 0; cell < kCells; ++cell) message.voltages[cell] = cell == 0 ? kVoltageMv : kNoCell;
   message.current_battery = -100;
   message.energy_consumed = -1;
-  message.battery_remaining = 100;
-  message.charge_state = MAV_BATTERY_CHARGE_STATE_OK;
+  message.battery_remaining = battery_percent(autopilot_.battery());
+  message.charge_state = static_cast<std::uint8_t>(autopilot_.battery_level());
   link.send(mavlink_msg_battery_status_encode_status, message);
 }
 
@@ -123,7 +136,7 @@ void MavlinkEndpoint::Impl::send_servos(MavlinkLink& link) {
 
 void MavlinkEndpoint::Impl::send_distance_sensor(MavlinkLink& link) {
   constexpr double kRange = 100.0;  // m
-  const double height = autopilot_.true_motion().position.z() - autopilot_.options().ground_height;
+  const double height = autopilot_.height_above_ground();
   mavlink_distance_sensor_t message{};
   message.time_boot_ms = boot_ms();
   message.max_distance = static_cast<std::uint16_t>(kRange * 100.0);

@@ -108,7 +108,7 @@ void MavlinkEndpoint::Impl::reset_streams(MavlinkLink& link) const {
   link.streams.clear();
   for (const MessageKind& kind : message_kinds()) {
     const double first = std::isfinite(kind.first_s) ? kind.first_s * start_factor_ : kind.first_s;
-    link.streams.push_back({.interval = kind.rate_hz > 0.0 ? 1.0 / kind.rate_hz : 0.0, .next_due = first});
+    link.streams.push_back({.interval = kind.rate_hz > 0.0 ? 1.0 / kind.rate_hz : 0.0, .next_due = boot_ + first});
   }
 }
 
@@ -135,11 +135,19 @@ std::uint32_t MavlinkEndpoint::Impl::boot_ms() const {
 }
 
 std::uint64_t MavlinkEndpoint::Impl::boot_us() const {
-  return static_cast<std::uint64_t>(std::llround(autopilot_.time() * 1e6));
+  return static_cast<std::uint64_t>(std::llround(autopilot_.boot_time() * 1e6));
+}
+
+Geodetic MavlinkEndpoint::Impl::to_global(const Vec3& local) const {
+  return frame_.to_geodetic(local + autopilot_.estimator().origin());
+}
+
+Vec3 MavlinkEndpoint::Impl::to_local(const Geodetic& place) const {
+  return frame_.to_enu(place) - autopilot_.estimator().origin();
 }
 
 Geodetic MavlinkEndpoint::Impl::global_position() const {
-  return frame_.to_geodetic(autopilot_.estimated_motion().position);
+  return to_global(autopilot_.estimated_motion().position);
 }
 
 void MavlinkEndpoint::Impl::send_heartbeat(MavlinkLink& link) {
@@ -159,11 +167,12 @@ void MavlinkEndpoint::Impl::send_sys_status(MavlinkLink& link) {
   message.onboard_control_sensors_present = kSensorsPresent;
   message.onboard_control_sensors_enabled = kSensorsEnabled;
   message.onboard_control_sensors_health =
-      kSensorsHealthy | (autopilot_.prearm_ok() ? std::uint32_t{MAV_SYS_STATUS_PREARM_CHECK} : 0U);
+      (autopilot_.estimator().gps() ? kSensorsHealthy : kSensorsHealthy & ~std::uint32_t{MAV_SYS_STATUS_SENSOR_GPS}) |
+      (autopilot_.prearm_ok() ? std::uint32_t{MAV_SYS_STATUS_PREARM_CHECK} : 0U);
   message.load = 100;
   message.voltage_battery = 16200;
   message.current_battery = -100;
-  message.battery_remaining = 100;
+  message.battery_remaining = battery_percent(autopilot_.battery());
   link.send(mavlink_msg_sys_status_encode_status, message);
 }
 
@@ -211,7 +220,9 @@ void MavlinkEndpoint::Impl::send_attitude_quaternion(MavlinkLink& link) {
   link.send(mavlink_msg_attitude_quaternion_encode_status, message);
 }
 
+/// PX4 sends neither position while it does not know where it is.
 void MavlinkEndpoint::Impl::send_local_position(MavlinkLink& link) {
+  if (!autopilot_.position_valid()) return;
   const Vec3 position_ned = swap_enu_ned(autopilot_.estimated_motion().position);
   const Vec3 velocity_ned = swap_enu_ned(autopilot_.estimated_motion().velocity);
   mavlink_local_position_ned_t message{};
@@ -226,6 +237,7 @@ void MavlinkEndpoint::Impl::send_local_position(MavlinkLink& link) {
 }
 
 void MavlinkEndpoint::Impl::send_global_position(MavlinkLink& link) {
+  if (!autopilot_.position_valid()) return;
   const Motion& motion = autopilot_.estimated_motion();
   const Geodetic place = global_position();
   const Vec3 velocity_ned = swap_enu_ned(motion.velocity);
@@ -267,13 +279,14 @@ void MavlinkEndpoint::Impl::send_odometry(MavlinkLink& link) {
   std::memcpy(message.pose_covariance, pose_covariance.data(), sizeof(message.pose_covariance));
   const auto velocity_covariance = upper_triangle({0.02F, 0.02F, 0.0015F, kNan, kNan, kNan});
   std::memcpy(message.velocity_covariance, velocity_covariance.data(), sizeof(message.velocity_covariance));
+  message.reset_counter = autopilot_.estimator().reset_counter();
   message.estimator_type = MAV_ESTIMATOR_TYPE_AUTOPILOT;
   link.send(mavlink_msg_odometry_encode_status, message);
 }
 
 void MavlinkEndpoint::Impl::send_altitude(MavlinkLink& link) {
   const double z = autopilot_.estimated_motion().position.z();
-  const double ground = autopilot_.options().ground_height;
+  const double ground = autopilot_.local_ground();
   mavlink_altitude_t message{};
   message.time_usec = boot_us();
   message.altitude_monotonic = message.altitude_amsl = real(global_position().altitude_m);
@@ -339,7 +352,7 @@ void MavlinkEndpoint::Impl::send_attitude_target(MavlinkLink& link) {
 }
 
 void MavlinkEndpoint::Impl::send_gps_origin(MavlinkLink& link) {
-  const Geodetic& origin = frame_.origin();
+  const Geodetic origin = to_global(Vec3::Zero());
   mavlink_gps_global_origin_t message{};
   message.latitude = rounded_32(origin.latitude_deg * kDegreesE7);
   message.longitude = rounded_32(origin.longitude_deg * kDegreesE7);
@@ -349,7 +362,7 @@ void MavlinkEndpoint::Impl::send_gps_origin(MavlinkLink& link) {
 }
 
 void MavlinkEndpoint::Impl::send_home(MavlinkLink& link) {
-  const Geodetic home = frame_.to_geodetic(autopilot_.home());
+  const Geodetic home = to_global(autopilot_.home());
   const Vec3 home_ned = swap_enu_ned(autopilot_.home());
   mavlink_home_position_t message{};
   message.latitude = rounded_32(home.latitude_deg * kDegreesE7);
@@ -366,7 +379,8 @@ void MavlinkEndpoint::Impl::send_home(MavlinkLink& link) {
 
 void MavlinkEndpoint::Impl::send_system_time(MavlinkLink& link) {
   mavlink_system_time_t message{};
-  message.time_unix_usec = options_.unix_time_at_start_us + boot_us();
+  message.time_unix_usec =
+      options_.unix_time_at_start_us + static_cast<std::uint64_t>(std::llround(autopilot_.time() * 1e6));
   message.time_boot_ms = boot_ms();
   link.send(mavlink_msg_system_time_encode_status, message);
 }
@@ -386,13 +400,16 @@ void MavlinkEndpoint::Impl::send_ping(MavlinkLink& link) {
 
 void MavlinkEndpoint::Impl::send_estimator_status(MavlinkLink& link) {
   constexpr std::uint16_t kAllGood = 895;  // PX4's SITL in flight
+  constexpr std::uint16_t kNoPosition =
+      kAllGood & ~(ESTIMATOR_VELOCITY_HORIZ | ESTIMATOR_POS_HORIZ_REL | ESTIMATOR_POS_HORIZ_ABS |
+                   ESTIMATOR_PRED_POS_HORIZ_REL | ESTIMATOR_PRED_POS_HORIZ_ABS);
   mavlink_estimator_status_t message{};
   message.time_usec = boot_us();
-  message.flags = kAllGood;
+  message.flags = autopilot_.position_valid() ? kAllGood : kNoPosition;
   message.vel_ratio = message.pos_horiz_ratio = message.pos_vert_ratio = 0.05F;
   message.mag_ratio = message.hagl_ratio = 0.1F;
   message.tas_ratio = kNan;
-  message.pos_horiz_accuracy = 0.3F;
+  message.pos_horiz_accuracy = real(autopilot_.estimator().horizontal_accuracy());
   message.pos_vert_accuracy = 0.03F;
   link.send(mavlink_msg_estimator_status_encode_status, message);
 }

@@ -12,16 +12,23 @@ Parameters::Parameters(const planner::VehicleLimits& limits, int system_id) {
   const auto real = [](double value) { return ParameterValue(static_cast<float>(value)); };
   const auto integer = [](int value) { return ParameterValue(std::int32_t{value}); };
   table_ = {
+      {"BAT_CRIT_THR", real(0.07)},
+      {"BAT_EMERGEN_THR", real(0.05)},
+      {"BAT_LOW_THR", real(0.15)},
       {"CAL_ACC0_ID", integer(1310988)},  // non-zero: calibrated
       {"CAL_GYRO0_ID", integer(1310988)},
       {"CAL_MAG0_ID", integer(197388)},
       {"COM_DISARM_LAND", real(2.0)},
       {"COM_DISARM_PRFLT", real(10.0)},
+      {"COM_FAIL_ACT_T", real(5.0)},
+      {"COM_LOW_BAT_ACT", integer(0)},
+      {"COM_OBC_LOSS_T", real(5.0)},
       {"COM_OBL_RC_ACT", integer(0)},
       {"COM_OF_LOSS_T", real(1.0)},
       {"COM_RCL_EXCEPT", integer(0)},
       {"COM_RC_IN_MODE", integer(1)},
       {"COM_SPOOLUP_TIME", real(1.0)},
+      {"EKF2_NOAID_TOUT", integer(5000000)},  // us
       {"MAV_COMP_ID", integer(1)},
       {"MAV_SYS_ID", integer(system_id)},
       {"MAV_TYPE", integer(2)},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/sensing.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -25,13 +26,16 @@ Vec3 noise(planner::RandomStream& random, double sigma) {
 }  // namespace
 
 std::vector<planner::Track> measure(const World& world, const config::Sensing& sensing, std::uint64_t seed,
-                                    std::uint64_t sequence, double t, const Vec3& vehicle) {
+                                    std::uint64_t sequence, double t, std::span<const Vec3> vehicles) {
   std::vector<planner::Track> tracks;
   tracks.reserve(static_cast<std::size_t>(world.obstacle_count()));
   const bool perfect = sensing.position_noise == 0.0 && sensing.velocity_noise == 0.0;
   for (int i = 0; i < world.obstacle_count(); ++i) {
     planner::Track track = world.exact_track(i, t);
-    if ((vehicle - track.position).norm() - track.radius > sensing.range) continue;
+    const auto near = [&](const Vec3& vehicle) {
+      return (vehicle - track.position).norm() - track.radius <= sensing.range;
+    };
+    if (std::none_of(vehicles.begin(), vehicles.end(), near)) continue;
     planner::RandomStream random(seed ^ kSensingStream, sequence, World::id(i));
     if (random.uniform() < sensing.dropout) continue;
     track.position += noise(random, sensing.position_noise);
@@ -44,12 +48,12 @@ std::vector<planner::Track> measure(const World& world, const config::Sensing& s
   return tracks;
 }
 
-void SensingPipeline::step(double t, const World& world, const Vec3& vehicle, double clock_start) {
+void SensingPipeline::step(double t, const World& world, std::span<const Vec3> vehicles, double clock_start) {
   for (;; ++next_) {
     const double due = static_cast<double>(next_) / sensing_.rate;
     if (!(due <= t + kDueTolerance)) return;
     pending_.push_back(
-        {next_, due, due + sensing_.delay, measure(world, sensing_, seed_, next_, due - clock_start, vehicle)});
+        {next_, due, due + sensing_.delay, measure(world, sensing_, seed_, next_, due - clock_start, vehicles), 0.0});
   }
 }
 

@@ -84,13 +84,18 @@ void VehicleModel::set_motors(Motors motors) {
   command_ = thrust_;
 }
 
+void VehicleModel::shift_setpoints(const Vec3& by) {
+  setpoint_.position += by;
+  for (Setpoint& setpoint : delayed_) setpoint.position += by;
+}
+
 Vec3 VehicleModel::velocity_command(const Setpoint& setpoint) const {
   Vec3 command = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const CascadeAxis& gains = axis == 2 ? cascade_.vertical : cascade_.horizontal;
     if (std::isfinite(setpoint.velocity[axis])) command[axis] += setpoint.velocity[axis];
     if (std::isfinite(setpoint.position[axis])) {
-      command[axis] += gains.position_gain * (setpoint.position[axis] - motion_.position[axis]);
+      command[axis] += gains.position_gain * (setpoint.position[axis] - known_position()[axis]);
     }
   }
   const double speed = std::clamp(bounds_.speed, 0.0, limits_.max_speed);
@@ -107,13 +112,13 @@ Vec3 VehicleModel::attainable(const Vec3& acceleration) const {
   thrust.z() = std::max(thrust.z(), -(1.0 - cascade_.min_lift_fraction) * kGravity);
   thrust = clamp_norm(thrust, cascade_.max_thrust_acceleration);
   // Drag helps braking and costs when speeding up; what remains is what max_acceleration is about.
-  const Vec3 drag = cascade_.drag * motion_.velocity;
+  const Vec3 drag = cascade_.drag * (motion_.velocity - wind_);
   return drag + clamp_norm(thrust - drag, limits_.max_acceleration);
 }
 
 Vec3 VehicleModel::control(const Setpoint& setpoint) {
   velocity_command_ = velocity_command(setpoint);
-  const Vec3 error = velocity_command_ - motion_.velocity;
+  const Vec3 error = velocity_command_ - known_velocity();
   Vec3 wanted = Vec3::Zero();
   Eigen::Array<bool, 3, 1> open_loop;
   for (int axis = 0; axis < 3; ++axis) {
@@ -151,7 +156,7 @@ void VehicleModel::integrate() {
   const double mass = limits_.mass;
   const Vec3 gravity(0, 0, -kGravity);
   const Vec3 rotor_force = mass * (thrust_ - gravity);
-  const Vec3 drag_force = -mass * cascade_.drag * motion_.velocity;
+  const Vec3 drag_force = -mass * cascade_.drag * (motion_.velocity - wind_);
   Vec3 acceleration = (rotor_force + drag_force + mass * gravity) / mass;
   const bool flying = motors_ == Motors::kFlying;
   // The lags let thrust and drag drift apart by a little after `attainable` saw them; the limit holds all the same.

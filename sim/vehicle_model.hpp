@@ -61,7 +61,7 @@ struct Cascade {
   double max_thrust_acceleration = 9.5;  ///< norm of the acceleration that may be asked for, gravity compensated
   double max_tilt = 44.0 * kDegree;      ///< the thrust's angle from the vertical when hovering thrust is kept
   double min_lift_fraction = 0.1;        ///< of the weight, that the rotors never go below in flight
-  double drag = 1.0;                     ///< 1/s, deceleration per m/s
+  double drag = 1.0;                     ///< 1/s, deceleration per m/s against the air
   double delay = 0.03;                   ///< s, from setpoint to cascade
   double max_descent = 1.5;              ///< m/s asked for downwards, PX4's MPC_Z_VEL_MAX_DN
   double yaw_gain = 2.8;                 ///< 1/s
@@ -98,6 +98,16 @@ class VehicleModel {
   void set_setpoint(const Setpoint& setpoint) { setpoint_ = setpoint; }
   void set_bounds(const SpeedBounds& bounds) { bounds_ = bounds; }
   void set_motors(Motors motors);
+  /// The velocity of the air: drag is against it.
+  void set_wind(const Vec3& velocity) { wind_ = velocity; }
+  /// What the cascade flies on from now on instead of the true position and velocity.
+  void set_estimate(const Vec3& position, const Vec3& velocity) {
+    estimated_position_ = position;
+    estimated_velocity_ = velocity;
+    flies_on_estimate_ = true;
+  }
+  /// Moves the positions that are asked for, those in the delay included: an estimate that jumps takes them along.
+  void shift_setpoints(const Vec3& by);
 
   /// Advances by kStep.
   void step();
@@ -112,6 +122,12 @@ class VehicleModel {
   [[nodiscard]] const Vec3& commanded_velocity() const { return velocity_command_; }
 
  private:
+  [[nodiscard]] const Vec3& known_position() const {
+    return flies_on_estimate_ ? estimated_position_ : motion_.position;
+  }
+  [[nodiscard]] const Vec3& known_velocity() const {
+    return flies_on_estimate_ ? estimated_velocity_ : motion_.velocity;
+  }
   [[nodiscard]] Vec3 velocity_command(const Setpoint& setpoint) const;
   [[nodiscard]] Vec3 attainable(const Vec3& acceleration) const;
   [[nodiscard]] Vec3 control(const Setpoint& setpoint);
@@ -137,6 +153,10 @@ class VehicleModel {
   Vec3 first_stage_ = Vec3::Zero();
   Vec3 thrust_ = Vec3::Zero();  ///< thrust per mass less the weight's, behind both lags
   double yaw_rate_ = 0.0;
+  Vec3 wind_ = Vec3::Zero();
+  Vec3 estimated_position_ = Vec3::Zero();
+  Vec3 estimated_velocity_ = Vec3::Zero();
+  bool flies_on_estimate_ = false;
 };
 
 }  // namespace jink::sim

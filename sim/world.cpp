@@ -89,6 +89,14 @@ double quick_bound(const config::Obstacle& obstacle, const Sphere& bound, const 
 
 }  // namespace
 
+SweepResult sweep(const SphereWay& a, const SphereWay& b, double t0, double t1) {
+  const Vec3 from = a.from - b.from;
+  const Vec3 change = (a.to - b.to) - from;
+  const double square = change.squaredNorm();
+  const double u = square > 0.0 ? std::clamp(-from.dot(change) / square, 0.0, 1.0) : 0.0;
+  return {(from + u * change).norm() - a.radius - b.radius, t0 + u * (t1 - t0), -1};
+}
+
 World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
   bounds_.reserve(scenario_.obstacles.size());
   for (const config::Obstacle& obstacle : scenario_.obstacles) bounds_.push_back(bounding_sphere(obstacle.shape));
@@ -113,7 +121,7 @@ planner::Track World::exact_track(int i, double t) const {
   return track;
 }
 
-double World::clearance(const Vec3& p, double t) const {
+double World::clearance(const Vec3& p, double t, double radius) const {
   double nearest = planner::kInfinity;
   for (int i = 0; i < obstacle_count(); ++i) {
     const Vec3 reference = obstacle(i, t).position;
@@ -121,10 +129,10 @@ double World::clearance(const Vec3& p, double t) const {
     if ((p - reference - bound(i).center).norm() - bound(i).radius >= nearest) continue;
     nearest = std::min(nearest, distance(spec(i).shape, reference, p));
   }
-  return nearest - scenario_.vehicle.radius;
+  return nearest - radius;
 }
 
-SweepResult World::sweep(const Vec3& p0, double t0, const Vec3& p1, double t1) const {
+SweepResult World::sweep(const Vec3& p0, double t0, const Vec3& p1, double t1, double radius) const {
   assert(t0 <= t1 && p0.allFinite() && p1.allFinite());
   const Way way{p0, p1, t0, t1};
   SweepResult result{planner::kInfinity, t0, -1};
@@ -133,7 +141,7 @@ SweepResult World::sweep(const Vec3& p0, double t0, const Vec3& p1, double t1) c
     if (quick_bound(spec(i), bound(i), way) >= nearest) continue;
     if (Search(spec(i), way).lower(nearest, result.t_min)) result.obstacle = i;
   }
-  result.min_clearance = nearest - scenario_.vehicle.radius;
+  result.min_clearance = nearest - radius;
   return result;
 }
 

@@ -14,12 +14,23 @@
 
 namespace jink::sim {
 
-/// The nearest that the vehicle came to any obstacle on a straight way.
+/// The nearest that the vehicle came to any obstacle, or another vehicle, on a straight way.
 struct SweepResult {
   double min_clearance = planner::kInfinity;  ///< m, from the vehicle's sphere to the obstacle's true surface
   double t_min = 0.0;                         ///< scenario time of it; one of several if it is held for a while
   int obstacle = -1;                          ///< index of that obstacle, -1: there is none
 };
+
+/// The straight way of a sphere during one step.
+struct SphereWay {
+  Vec3 from = Vec3::Zero();
+  Vec3 to = Vec3::Zero();
+  double radius = 0.0;
+};
+
+/// The smallest distance between the surfaces of two spheres in continuous time while both go at constant velocity from
+/// `t0` to `t1`, negative where they overlap; `obstacle` stays -1. O(1).
+[[nodiscard]] SweepResult sweep(const SphereWay& a, const SphereWay& b, double t0, double t1);
 
 /// A scenario brought to life. All times are scenario time in seconds; for t < 0 the clock does not run yet and the
 /// obstacles stand at their t = 0 positions. ENU, m. Immutable after construction, so all members are thread safe.
@@ -53,14 +64,20 @@ class World {
   /// Smallest distance at `t` from the vehicle's sphere, centred at `p`, to the true surface of any obstacle; negative
   /// where they overlap, infinite without obstacles. In a hull of vertices it is minus the vehicle's radius however
   /// deep.
-  [[nodiscard]] double clearance(const Vec3& p, double t) const;
+  [[nodiscard]] double clearance(const Vec3& p, double t) const { return clearance(p, t, scenario_.vehicle.radius); }
+  /// The same for a vehicle of that radius.
+  [[nodiscard]] double clearance(const Vec3& p, double t, double radius) const;
 
   /// The minimum of clearance() in continuous time while the vehicle goes at constant velocity from `p0` at `t0` to
   /// `p1` at `t1` >= t0 (if they are equal: along that way in the world as it is then). No contact is missed, however
   /// short: every piece of the interval is either shown to be no nearer than the result, or split, by the exact
   /// distance of the obstacle's shape from the chord of the relative motion and a bound on the way the motion leaves
   /// that chord.
-  [[nodiscard]] SweepResult sweep(const Vec3& p0, double t0, const Vec3& p1, double t1) const;
+  [[nodiscard]] SweepResult sweep(const Vec3& p0, double t0, const Vec3& p1, double t1) const {
+    return sweep(p0, t0, p1, t1, scenario_.vehicle.radius);
+  }
+  /// The same for a vehicle of that radius.
+  [[nodiscard]] SweepResult sweep(const Vec3& p0, double t0, const Vec3& p1, double t1, double radius) const;
 
   /// The flight volume; unbounded where the scenario states none.
   [[nodiscard]] planner::Box volume() const { return scenario_.world.value_or(planner::Box{}); }

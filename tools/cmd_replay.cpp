@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink replay: a scenario flown closed loop in virtual time, in one process.
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "config/scenario.hpp"
@@ -19,6 +21,18 @@ struct ReplayOptions {
   std::string report;
 };
 
+/// The faults to the terminal as they begin and end.
+class FaultPrinter final : public bridge::FlightObserver {
+ public:
+  explicit FaultPrinter(const Printer& printer) : printer_(printer) {}
+  void on_event(double t, std::string_view name, const std::string& detail) override {
+    if (name == "fault") printer_.line(fmt::format("t {:6.2f} s  fault: {}", t, detail));
+  }
+
+ private:
+  const Printer& printer_;
+};
+
 int run(const ReplayOptions& options) {
   const Printer printer(options.common.json == "-");
   const config::Settings settings = options.common.settings();
@@ -28,10 +42,17 @@ int run(const ReplayOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
+  if (!scenario.vehicles.empty()) {
+    throw UsageError(options.scenario +
+                     ": key 'vehicles': replay flies one vehicle; fly several with jink sim and one " +
+                     "jink fly for each");
+  }
 
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
+  FaultPrinter faults(printer);
+  loop.flight_observers.push_back(&faults);
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
     log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));

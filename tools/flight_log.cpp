@@ -73,9 +73,14 @@ void FlightLog::on_event(double t, std::string_view name, const std::string& det
   write({{"type", "event"}, {"t", t}, {"name", name}, {"detail", detail}});
 }
 
-void FlightLog::on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity,
-                         const sim::World& world) {
-  write({{"type", "truth"}, {"t", t}, {"p", vector_json(position)}, {"v", vector_json(velocity)}});
+void FlightLog::on_truth(double t, std::span<const sim::VehicleTruth> vehicles, const sim::World& world) {
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    Json record{{"type", "truth"}, {"t", t}};
+    if (vehicles.size() > 1) record["vehicle"] = k;
+    record["p"] = vector_json(vehicles[k].position);
+    record["v"] = vector_json(vehicles[k].velocity);
+    write(record);
+  }
   for (int i = 0; i < world.obstacle_count(); ++i) {
     const planner::Sphere sphere = world.sphere(i, t);
     write({{"type", "obstacles"},

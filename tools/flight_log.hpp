@@ -16,7 +16,8 @@ namespace jink::tools {
 /// Writes one line for each record as it comes. Numbers are printed so that they read back to the same bits.
 ///
 /// header {type, format, scenario|mission, seed, version, parameters, ...}; then, each with `type` and `t` (s):
-/// truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator;
+/// truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has several
+/// vehicles, one truth {vehicle, p, v} for each, by number from 0;
 /// state {p, v, armed, mode}, tracks {tracks: [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]},
 /// plan {path: [[t, x, y, z], ...], ms, status}, setpoint {p, v, a, yaw}, event {name, detail}.
 /// Vectors are [x, y, z], ENU, m. `t` of truth and obstacles is scenario time, of the others the companion's clock; in
@@ -32,8 +33,7 @@ class FlightLog final : public bridge::FlightObserver, public sim::TruthObserver
   void on_plan(double t, const bridge::PlanResult& result) override;
   void on_setpoint(double t, const bridge::Setpoint& setpoint) override;
   void on_event(double t, std::string_view name, const std::string& detail) override;
-  void on_truth(double t, const planner::Vec3& position, const planner::Vec3& velocity,
-                const sim::World& world) override;
+  void on_truth(double t, std::span<const sim::VehicleTruth> vehicles, const sim::World& world) override;
 
   /// Flushes. Throws std::runtime_error where not all could be written (a full disk).
   void close();

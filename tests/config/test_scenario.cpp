@@ -210,6 +210,48 @@ TEST(LoadScenario, RefusesBadMotions) {
   for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
 }
 
+const std::string kTeam = kValid +
+                          "vehicles:\n"                                                         // 15
+                          "- {start: [0, 2, 1.5], target: [20, 2, 1.5]}\n"                      // 16
+                          "- {start: [0, 4, 1.6], target: [20, 4, 1.7], vehicle: ardrone2}\n";  // 17
+
+TEST(LoadScenario, ReadsFurtherVehicles) {
+  EXPECT_TRUE(loaded(kValid).vehicles.empty());
+  EXPECT_EQ(all_vehicles(loaded(kValid)).size(), 1U);
+  const Scenario s = loaded(kTeam);
+  ASSERT_EQ(s.vehicles.size(), 2U);
+  EXPECT_EQ(s.vehicles[0].start, Vec3(0, 2, 1.5));
+  EXPECT_EQ(s.vehicles[0].target, Vec3(20, 2, 1.5));
+  EXPECT_EQ(s.vehicles[0].vehicle_name, "inline");
+  EXPECT_EQ(s.vehicles[0].vehicle.mass, 0.4);
+  EXPECT_EQ(s.vehicles[1].vehicle_name, "ardrone2");
+  EXPECT_EQ(s.vehicles[1].vehicle.mass, 0.42);
+  const std::vector<ScenarioVehicle> all = all_vehicles(s);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].start, s.start);
+  EXPECT_EQ(all[0].target, s.target);
+  EXPECT_EQ(all[2].target, Vec3(20, 4, 1.7));
+}
+
+TEST(LoadScenario, RefusesBadFurtherVehicles) {
+  const std::vector<BadCase> cases = {
+      {"start: [0, 2, 1.5], ", "", 16, "vehicles[0].start", "", "missing"},
+      {", target: [20, 2, 1.5]", "", 16, "vehicles[0].target", "", "missing"},
+      {"target: [20, 2, 1.5]", "targt: [20, 2, 1.5]", 16, "vehicles[0].targt", "[20, 2, 1.5]",
+       "did you mean 'target'?"},
+      {"start: [0, 2, 1.5]", "start: [0, 12, 1.5]", 16, "vehicles[0].start[1]", "12", "not in [-10, 10]"},
+      // The two spheres of 0.3 m would overlap on the ground, however far apart the starts are in height.
+      {"start: [0, 2, 1.5]", "start: [0, 0.5, 7]", 16, "vehicles[0].start", "[0, 0.5, 7]",
+       "is 0.5 m from vehicle 0 on the ground; expected more than 0.6 m"},
+      {"start: [0, 4, 1.6]", "start: [0, 2, 1.5]", 17, "vehicles[1].start", "[0, 2, 1.5]", "is 0 m from vehicle 1"},
+      {"vehicle: ardrone2", "vehicle: ardrone3", 17, "vehicles[1].vehicle", "ardrone3", "did you mean 'ardrone2'?"},
+      {"vehicles:\n- {start: [0, 2, 1.5], target: [20, 2, 1.5]}\n- {start: [0, 4, 1.6], target: [20, 4, 1.7], "
+       "vehicle: ardrone2}\n",
+       "vehicles: [1,2,3,4,5,6,7,8,9,10]\n", 15, "vehicles", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", "in [0, 9]"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kTeam, bad, load);
+}
+
 TEST(LoadScenario, NamesTheLineOfAValueInALongList) {
   const std::string text = replaced(kValid, "start: [0, 0, 1.5]", "start:\n- 0\n- zero\n- 1.5");
   const TempFolder folder;

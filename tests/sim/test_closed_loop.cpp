@@ -64,7 +64,8 @@ class Hash final : public bridge::FlightObserver, public TruthObserver {
     for (const char c : std::string(name) + detail) add_byte(static_cast<std::uint8_t>(c));
     events.push_back(std::string(name) + ": " + detail);
   }
-  void on_truth(double t, const Vec3& position, const Vec3& velocity, const World& world) override {
+  void on_truth(double t, std::span<const VehicleTruth> vehicles, const World& world) override {
+    const auto& [position, velocity] = vehicles.front();
     add(t, position, velocity);
     farthest_aside = std::max(farthest_aside, std::hypot(position.y(), position.z() - 1.5));
     for (int i = 0; i < world.obstacle_count(); ++i) add(t, world.sphere(i, t).center, position);

@@ -108,6 +108,8 @@ class Reader {
  private:
   bool add(const std::string& type, double t, const Json& record) {
     if (type == "truth") {
+      // The report shows one flight: of several vehicles in a simulator's log, the first.
+      if (const auto vehicle = record.find("vehicle"); vehicle != record.end() && *vehicle != 0) return true;
       data_.truth.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
     } else if (type == "obstacles") {
       const Body body = body_of(record, false);
