@@ -132,7 +132,7 @@ bool AdsbTracks::poll(TrackMessage& message) {
   status_.writers = static_cast<int>(senders_.size());
   const bool due = !aircraft_.empty() && now - last_message_ >= kRepeat_s;
   if (!fresh && !due) return false;
-  message = TrackMessage{kWriter, now, 0.0, {}, std::exchange(dropped_, 0)};
+  message = TrackMessage{kWriter, now, 0.0, {}, std::exchange(dropped_, 0), /*watches=*/false};
   for (const auto& [id, aircraft] : aircraft_) {
     const double age = std::max(0.0, now - aircraft.measured);
     Track track = aircraft.track;

@@ -64,7 +64,11 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
       stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag,
-               settings.horizon.braking, mission.vehicle.max_acceleration, flight_volume(mission)}) {}
+               settings.horizon.braking, mission.vehicle.max_acceleration, flight_volume(mission)}) {
+  if (mission.intents && parts_.intents != nullptr) {
+    team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
+  }
+}
 
 void Companion::event(double now, std::string_view name, const std::string& detail) {
   for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
@@ -81,11 +85,13 @@ bool Companion::step(double now) {
   }
   take_state(now);
   take_tracks(now);
+  if (team_) team_->listen(now, state_);
   take_plan(now);
   measure(now);
   const Decision decision = supervisor_.update(now, state_, picture(now));
   record_hazard(now);
   move(now, decision);
+  if (team_) team_->tell(now, state_, decision.motion == Decision::Motion::kNone ? nullptr : &stream_, summary_.plans);
   if (decision.request) {
     event(now, "request", std::string(to_string(*decision.request)));
     parts_.link.request(*decision.request);
@@ -200,6 +206,7 @@ void Companion::start_plan(double now) {
   job.newest_track = table_.newest_message();
   job.estimate_shift = estimate_shift_;
   job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
+  if (team_) job.paths = team_->paths(now, job.start);
 
   const planner::TimedPoint reference = stream_.reference(job.start);
   const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
@@ -369,6 +376,9 @@ void Companion::record_hazard(double now) {
 
 // Events for what changed: nothing happens silently, and nothing is said fifty times a second.
 void Companion::announce(double now) {
+  if (team_) {
+    for (const Team::News& news : team_->news(now)) event(now, news.name, news.detail);
+  }
   if (supervisor_.phase() != announced_phase_) {
     announced_phase_ = supervisor_.phase();
     event(now, "phase",

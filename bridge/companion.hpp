@@ -12,6 +12,7 @@
 #include "bridge/planner_task.hpp"
 #include "bridge/setpoint_stream.hpp"
 #include "bridge/supervisor.hpp"
+#include "bridge/team.hpp"
 #include "bridge/track_source.hpp"
 #include "bridge/track_table.hpp"
 #include "bridge/vehicle_link.hpp"
@@ -72,6 +73,7 @@ struct CompanionParts {
   PlannerTask& planner;
   std::vector<FlightObserver*> observers;
   const Clock* clock = nullptr;  ///< the one that step() is told; to measure what a step takes. Null: virtual time
+  IntentTransport* intents = nullptr;  ///< to and from the team's other vehicles; null: there are none
 };
 
 /// Owns the picture of the flight; the parts outlive it. Not thread-safe: step() from one thread.
@@ -116,6 +118,7 @@ class Companion {
   CompanionParts parts_;
   Supervisor supervisor_;
   TrackTable table_;
+  std::optional<Team> team_;  // where the mission wants it and there is a transport
   SetpointStream stream_;
   VehicleState state_;
   Vec3 takeoff_point_ = Vec3::Zero();

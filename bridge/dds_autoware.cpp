@@ -152,6 +152,7 @@ class DdsAutowareReader::Impl {
                 [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
 
   bool poll(TrackMessage& message) { return inbox_.poll(message); }
+  void notify(Wake& wake) { inbox_.notify(wake); }
 
   TrackSourceStatus status() const {
     TrackSourceStatus status = inbox_.status();
@@ -188,6 +189,9 @@ class DdsAutowareReader::Impl {
 
 DdsAutowareReader::DdsAutowareReader(DdsNode& node, const Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
 DdsAutowareReader::~DdsAutowareReader() = default;
+void DdsAutowareReader::notify(Wake& wake) {
+  impl_->notify(wake);
+}
 bool DdsAutowareReader::poll(TrackMessage& message) {
   return impl_->poll(message);
 }

@@ -32,8 +32,9 @@ struct AutowareMessage {
 /// the object's own frame and are turned by its orientation (an orientation of zeros counts as none where the message
 /// says that there is none, else the object is left out); the radius is that of the sphere around its shape: half the
 /// diagonal of a bounding box, radius and half height of a cylinder, the farthest point of a footprint and half the
-/// height of a polygon; position_sigma and velocity_sigma are the largest standard deviation in any direction, leaving out
-/// those of 100 and more, which stand for "no information"; 0 where none is left or the covariance is marked as unknown
+/// height of a polygon; position_sigma and velocity_sigma are the largest standard deviation in any direction, leaving
+/// out those of 100 and more, which stand for "no information"; 0 where none is left or the covariance is marked as
+/// unknown
 /// (-1). Classification and existence probability do not matter: all that is
 /// tracked is avoided. [autoware_msgs, autoware_perception_msgs/msg]
 [[nodiscard]] std::optional<AutowareMessage> decode_tracked_objects(std::span<const std::uint8_t> payload);
@@ -51,6 +52,7 @@ class DdsAutowareReader final : public TrackSource {
 
   bool poll(TrackMessage& message) override;
   [[nodiscard]] TrackSourceStatus status() const override;
+  void notify(Wake& wake) override;
   /// Messages thrown away unread because nobody polled.
   [[nodiscard]] std::uint64_t overruns() const;
   /// Payloads that could not be decoded.

@@ -33,6 +33,10 @@ constexpr std::uint32_t kFirstPayload_bytes = 512;
   throw std::runtime_error("DDS " + what + " of " + topic + " cannot be made");
 }
 
+std::uint64_t identity_of(const eprosima::fastrtps::rtps::GUID_t& guid) {
+  return fnv1a(guid.entityId.value, fnv1a(guid.guidPrefix.value));
+}
+
 }  // namespace
 
 PayloadType::PayloadType(const std::string& name) {
@@ -142,8 +146,7 @@ void PayloadReader::on_data_available(dds::DataReader* reader) {
   dds::SampleInfo info;
   while (reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
-    const auto guid = info.sample_identity.writer_guid();
-    take_(sample_, fnv1a(guid.entityId.value, fnv1a(guid.guidPrefix.value)));
+    take_(sample_, identity_of(info.sample_identity.writer_guid()));
   }
 }
 
@@ -180,6 +183,10 @@ PayloadWriter::~PayloadWriter() {
 
 bool PayloadWriter::write(const Payload& payload) {
   return writer_->write(const_cast<Payload*>(&payload));  // NOLINT: the library's interface; it only reads
+}
+
+std::uint64_t PayloadWriter::identity() const {
+  return identity_of(writer_->guid());
 }
 
 void PayloadWriter::on_publication_matched(dds::DataWriter* /*writer*/, const dds::PublicationMatchedStatus& matched) {

@@ -129,6 +129,8 @@ class PayloadWriter final : private dds::DataWriterListener {
   [[nodiscard]] bool write_message(const Generated& message);
   /// Matched now.
   [[nodiscard]] int readers() const { return readers_; }
+  /// What a PayloadReader, here or elsewhere, knows this writer by.
+  [[nodiscard]] std::uint64_t identity() const;
 
  private:
   void on_publication_matched(dds::DataWriter* writer, const dds::PublicationMatchedStatus& matched) override;

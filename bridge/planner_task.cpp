@@ -57,6 +57,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     try {
       const double begun = clock_.now();
       result.job.request.tracks = result.job.tracks;
+      result.job.request.paths = result.job.paths;
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::Budget budget{
           settings_.horizon.generations,
@@ -82,6 +83,7 @@ void VirtualPlanner::start(PlanJob job) {
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
   result.job.request.tracks = result.job.tracks;
+  result.job.request.paths = result.job.paths;
   const planner::Budget budget{settings_.horizon.generations, planner::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);

@@ -18,9 +18,10 @@ namespace jink::bridge {
 
 /// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
 struct PlanJob {
-  planner::PathRequest request;  ///< `tracks` is set by the task to the job's own
+  planner::PathRequest request;  ///< `tracks` and `paths` are set by the task to the job's own
   std::vector<planner::Track> tracks;
-  planner::TimedPath previous;  ///< times from `start` on
+  std::vector<planner::KnownPath> paths;  ///< of the team's other vehicles
+  planner::TimedPath previous;            ///< times from `start` on
   std::uint64_t number = 0;
   double begun = 0.0;
   double start = 0.0;

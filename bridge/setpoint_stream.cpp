@@ -113,4 +113,16 @@ planner::TimedPath SetpointStream::plan(double t) const {
   return planner::remainder(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
 }
 
+planner::TimedPath SetpointStream::ahead(double t) const {
+  assert(active());
+  if (next_.empty()) return planner::remainder(current_, t);
+  if (t >= next_.front().t) return planner::remainder(next_, t);
+  planner::TimedPath path = planner::remainder(current_, t);
+  const planner::TimedPoint end = planner::sample(path, next_.front().t - kJoint);
+  std::erase_if(path, [&](const planner::TimedPoint& p) { return p.t >= end.t; });
+  if (!path.empty()) path.push_back(end);
+  path.insert(path.end(), next_.begin(), next_.end());
+  return path;
+}
+
 }  // namespace jink::bridge

@@ -50,6 +50,9 @@ class SetpointStream {
   [[nodiscard]] bool braking() const { return is_braking_; }
   /// The path followed at time t, for the planner's warm start; empty while holding or braking.
   [[nodiscard]] planner::TimedPath plan(double t) const;
+  /// All that is followed from time t on, the path that waits for its start, a stop and a stay included: reference() as
+  /// a path. Precondition: active().
+  [[nodiscard]] planner::TimedPath ahead(double t) const;
 
  private:
   [[nodiscard]] double deceleration(const Vec3& position, const Vec3& velocity) const;

@@ -18,6 +18,7 @@ struct TrackMessage {
   double stamp_age = 0.0;    ///< system time at reception minus the message's stamp; as measured, may be absurd
   std::vector<planner::Track> tracks;
   std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
+  bool watches = true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
 };
 
 /// What was refused at the door since the start; for events and summaries.

@@ -22,6 +22,9 @@ class TrackSources final : public TrackSource {
   /// The sum; last_refusal is the newest among them, as far as calls of status() tell: of those that changed between
   /// two calls, the later source's.
   [[nodiscard]] TrackSourceStatus status() const override;
+  void notify(Wake& wake) override {
+    for (Source& source : sources_) source.source->notify(wake);
+  }
 
  private:
   struct Source {

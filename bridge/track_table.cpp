@@ -11,11 +11,10 @@ namespace {
 
 using planner::Vec3;
 
-constexpr double kStampRate =
-    0.1;                          // s of stamp for each second of reception, below which a writer's stamps stand still
-constexpr double kMoving = 0.05;  // m/s, above which a track that stands is not a new measurement
+constexpr double kMoving = 0.05;     // m/s, above which a track that stands is not a new measurement
 constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velocity, at most, of its own track
 constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
+constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
 constexpr double kSelfLeaves = 2.0;  // times the distance that makes a track its own, at which it no longer is
 
 // What a track may be, about what an outdoor flight meets.
@@ -44,30 +43,11 @@ bool plausible(const planner::Track& track) {  // each comparison is false for N
 
 // How old the message's measurement was at reception; nothing where it is too old to say anything of the present.
 std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
-  const double age = message.stamp_age;
-  const double stamp = message.received - age;  // to within a constant
-  const auto [known, first] = writers_.try_emplace(message.writer);
-  Writer& writer = known->second;
-  const bool advanced = !first && stamp - writer.stamp > kStampRate * (message.received - writer.received);
-  writer.advances = writer.advances || advanced;
-  writer.smallest_age = first ? age : std::min(writer.smallest_age, age);
-  writer.stamp = stamp;
+  Writer& writer = writers_[message.writer];
   writer.received = message.received;
-  if (!first && !writer.advances) {  // it does not stamp at all
-    ++counts_.clock_offsets;
-    return 0.0;
-  }
-  if (age - writer.smallest_age > kLongestDelay) {
-    if (writer.late_since < 0.0) writer.late_since = message.received;
-    // Held up on the way, or the same old measurement again. Only where it goes on so and new ones come was a clock
-    // set.
-    if (!advanced || message.received - writer.late_since <= kLongestDelay) return std::nullopt;
-    writer.smallest_age = age;
-  }
-  writer.late_since = -1.0;
-  if (writer.smallest_age >= 0.0 && writer.smallest_age <= kLongestDelay) return std::min(age, kLongestDelay);
-  ++counts_.clock_offsets;
-  return std::min(age - writer.smallest_age, kLongestDelay);
+  const std::optional<double> delay = writer.clock.delay(message.received, message.stamp_age);
+  if (delay && writer.clock.off()) ++counts_.clock_offsets;
+  return delay;
 }
 
 // What moves has not moved. Nothing where nothing moves.
@@ -93,7 +73,7 @@ void TrackTable::ingest(const TrackMessage& message) {
     return;
   }
   const double measured = message.received - *delay;
-  newest_message_ = std::max(newest_message_, message.received);
+  if (message.watches) newest_message_ = std::max(newest_message_, message.received);
   writers_[message.writer].believed = message.received;
   for (const planner::Track& track : message.tracks) {
     if (!plausible(track)) {
@@ -127,7 +107,8 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
   own_tracks_ = 0;
   for (auto& [key, entry] : entries_) {
     const double age = std::max(0.0, now - entry.measured);
-    const double near = (radius + kSelfSigmas * entry.track.position_sigma) * (entry.is_self ? kSelfLeaves : 1.0);
+    const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
+    const double near = (radius + doubt) * (entry.is_self ? kSelfLeaves : 1.0);
     const bool here = (entry.track.position + age * entry.track.velocity - position).norm() < near &&
                       (entry.track.velocity - velocity).norm() < kSelfSpeed;
     if (!here) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bridge/stamp_clock.hpp"
 #include "bridge/track_source.hpp"
 #include "planner/types.hpp"
 
@@ -34,11 +35,8 @@ class TrackTable {
   /// `coast_s`: how long a track lives on after the last message that held it.
   explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
 
-  /// Takes in one message. The measurement's instant is the reception less the delay read from the stamp. A stamp that
-  /// lies in the future or more than kLongestDelay back tells of a clock that is off: then the writer's smallest stamp
-  /// age so far stands for the offset and what exceeds it for the delay. A message whose delay exceeds kLongestDelay is
-  /// left out, as if it had not come; where that lasts for kLongestDelay with stamps that advance, a clock was set and
-  /// its offset is learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
+  /// Takes in one message. The measurement's instant is the reception less the delay that the writer's StampClock
+  /// believes; a message that is too late for it is left out, as if it had not come.
   ///
   /// A message in which every track that should have moved stands where it stood in the one before, to the last bit, is
   /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
@@ -54,7 +52,7 @@ class TrackTable {
   /// the same.
   std::vector<planner::Track> predict(double now, double trust);
 
-  /// Reception of the newest message of any writer; negative: none yet.
+  /// Reception of the newest message of any writer that watches; negative: none yet.
   [[nodiscard]] double newest_message() const { return newest_message_; }
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
   /// Living tracks that are taken for the vehicle itself.
@@ -62,7 +60,6 @@ class TrackTable {
   /// Writers whose last believed message came between `timeout_s` and kForgetWriter before `now`.
   [[nodiscard]] int silent_writers(double now, double timeout_s) const;
 
-  static constexpr double kLongestDelay = 1.0;   ///< s, from measurement to reception
   static constexpr std::size_t kMost = 20000;    ///< living tracks
   static constexpr double kFarthest = 1e5;       ///< m from the origin
   static constexpr double kSelfTime = 0.2;       ///< s
@@ -77,12 +74,9 @@ class TrackTable {
     bool is_self = false;
   };
   struct Writer {
-    double smallest_age = 0.0;  // of its stamps
-    double stamp = 0.0;         // the newest message's, to within a constant
+    StampClock clock;
     double received = 0.0;
     double believed = -1.0;  // reception of the newest message that was taken in
-    double late_since = -1.0;
-    bool advances = false;
   };
   std::optional<double> delay_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;

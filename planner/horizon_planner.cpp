@@ -33,17 +33,19 @@ OptimizerSettings sized(OptimizerSettings o, const HorizonSettings& s) {
 
 bool finite(const PathRequest& request) {
   return request.position.allFinite() && request.velocity.allFinite() && request.target.allFinite() &&
-         std::all_of(request.tracks.begin(), request.tracks.end(), [](const Track& t) {
-           return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
-                  std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
-         });
+         std::all_of(request.tracks.begin(), request.tracks.end(),
+                     [](const Track& t) {
+                       return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
+                              std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
+                     }) &&
+         std::all_of(request.paths.begin(), request.paths.end(), [](const KnownPath& p) { return p.well_formed(); });
 }
 
 /// Checks a path up to a time; a path that ends before waits at its end.
 Verification verify_until(const TimedPath& path, const PathRequest& request, double until) {
   const auto check = [&](std::span<const TimedPoint> points) {
-    return verify(
-        {points, request.tracks, 0.0, request.vehicle.radius, request.volume, request.acceleration_trust, until});
+    return verify({points, request.tracks, 0.0, request.vehicle.radius, request.volume, request.acceleration_trust,
+                   until, request.paths});
   };
   if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
   TimedPath waiting = path;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "planner/obstacle_motion.hpp"
 #include "planner/path_scene.hpp"
@@ -17,6 +18,7 @@ constexpr double kOnTime = 1.2;         // s, about an encounter, in which a dis
 constexpr double kStopBraking = 2.0;    // m/s², of a gentle stop
 constexpr double kStopStep = 0.1;       // s
 constexpr double kReturn = 1.0;         // s, in which it fades before and after
+constexpr double kDifference = 0.05;    // s, over which twice a known path's velocity is taken
 
 /// Where undisturbed flight comes too close to an obstacle.
 struct Encounter {
@@ -26,26 +28,49 @@ struct Encounter {
   double wanted = 0.0;  // distance between the centres
 };
 
+/// The closest approach of undisturbed flight to an obstacle of which `position` and `velocity` tell at a time, where
+/// it is nearer than `wanted`.
+template <typename Position, typename Velocity>
+std::optional<Encounter> encounter(const TimedPath& undisturbed, double until, double wanted, const Position& position,
+                                   const Velocity& velocity) {
+  Encounter e;
+  e.wanted = wanted;
+  double least = wanted * wanted;
+  bool met = false;
+  for (const TimedPoint& point : undisturbed) {
+    if (point.t > until) break;
+    const Vec3 apart = point.position - position(point.t);
+    if (apart.squaredNorm() >= least) continue;
+    least = apart.squaredNorm();
+    met = true;
+    e.t = point.t;
+    e.apart = apart;
+    e.closing = point.velocity - velocity(point.t);
+  }
+  if (!met) return std::nullopt;
+  return e;
+}
+
 /// The first encounters, in order of time.
 std::vector<Encounter> encounters(const PathRequest& request, const TimedPath& undisturbed, double until,
                                   double clearance) {
   std::vector<Encounter> list;
+  const double trust = request.acceleration_trust;
   for (const Track& track : request.tracks) {
-    Encounter e;
-    e.wanted = track.radius + request.vehicle.radius + clearance;
-    double least = e.wanted * e.wanted;
-    bool met = false;
-    for (const TimedPoint& point : undisturbed) {
-      if (point.t > until) break;
-      const Vec3 apart = point.position - predict_position(track, point.t, request.acceleration_trust);
-      if (apart.squaredNorm() >= least) continue;
-      least = apart.squaredNorm();
-      met = true;
-      e.t = point.t;
-      e.apart = apart;
-      e.closing = point.velocity - predict_velocity(track, point.t, request.acceleration_trust);
-    }
-    if (met) list.push_back(e);
+    const auto e = encounter(
+        undisturbed, until, track.radius + request.vehicle.radius + clearance,
+        [&](double t) { return predict_position(track, t, trust); },
+        [&](double t) { return predict_velocity(track, t, trust); });
+    if (e) list.push_back(*e);
+  }
+  for (const KnownPath& path : request.paths) {
+    const auto velocity = [&](double t) -> Vec3 {
+      return (path.position(t + kDifference) - path.position(t - kDifference)) / (2.0 * kDifference);
+    };
+    const auto e = encounter(
+        undisturbed, std::min(until, path.until), path.radius + path.margin + request.vehicle.radius + clearance,
+        [&](double t) { return path.position(t); }, velocity);
+    if (e) list.push_back(*e);
   }
   const std::size_t first = std::min(kEncounters, list.size());
   std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(first), list.end(),

@@ -19,7 +19,7 @@ namespace jink::planner {
 ///   motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far side, and
 ///   between them, taken around the time of the encounter; and a stop short of it.
 /// `undisturbed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
-/// is to be kept from an obstacle's surface. O(tracks · points).
+/// is to be kept from an obstacle's surface. O(obstacles · points).
 std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,
                                   std::span<const double> times, double clearance);
 

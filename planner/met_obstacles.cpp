@@ -21,27 +21,82 @@ Box united(const Box& a, const Box& b) {
   return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
 }
 
-/// The largest speed within the first `time` seconds: the velocity changes along a line, so it is one end's.
-double fastest(const Track& track, double time, double trust) {
-  return std::sqrt(std::max(track.velocity.squaredNorm(), predict_velocity(track, time, trust).squaredNorm()));
-}
+/// How an obstacle on a track moves.
+class TrackMotion {
+ public:
+  TrackMotion(const Track& track, double trust) : track_(track), trust_(trust) {}
 
-/// Clearance asked for on top of the hard distance after t seconds.
-double uncertainty(const Track& track, const Clearance& clearance, double t) {
-  const double ahead = t + track.age;
-  const double moved = track.velocity_sigma * ahead;
-  const double sigma = std::sqrt(track.position_sigma * track.position_sigma + moved * moved);
-  return std::min(clearance.limit, clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead);
-}
+  [[nodiscard]] Vec3 position(double t) const { return predict_position(track_, t, trust_); }
+  /// The largest speed within the first `time` seconds: the velocity changes along a line, so it is one end's.
+  [[nodiscard]] double fastest(double time) const {
+    return std::sqrt(std::max(track_.velocity.squaredNorm(), predict_velocity(track_, time, trust_).squaredNorm()));
+  }
+  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] double until() const { return kInfinity; }
+  /// How far it strays from even motion between two instants. differs: that an accelerated track does so, by at most
+  /// an eighth of its acceleration times step², is left to the margin.
+  [[nodiscard]] double bend(double /*begin*/, double /*end*/) const { return 0.0; }
+  /// A bound of bend() for any two instants that are `step` apart.
+  [[nodiscard]] double most_bend(double /*step*/) const { return 0.0; }
+  /// Clearance asked for on top of the hard distance after t seconds.
+  [[nodiscard]] double uncertainty(const Clearance& clearance, double t) const {
+    const double ahead = t + track_.age;
+    const double moved = track_.velocity_sigma * ahead;
+    const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
+    return std::min(clearance.limit,
+                    clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead);
+  }
+
+ private:
+  const Track& track_;
+  double trust_;
+};
+
+/// The same of one on a known path.
+class PathMotion {
+ public:
+  explicit PathMotion(const KnownPath& path) : path_(path), fastest_(path.fastest()) {}
+
+  [[nodiscard]] Vec3 position(double t) const { return path_.position(t); }
+  [[nodiscard]] double fastest(double /*time*/) const { return fastest_; }
+  [[nodiscard]] double radius() const { return path_.radius + path_.margin; }
+  [[nodiscard]] double until() const { return path_.until; }
+  /// Both the path and even motion are straight between the path's points, so they are farthest apart at one of them.
+  [[nodiscard]] double bend(double begin, double end) const {
+    const TimedPath& points = path_.points;
+    const Vec3 from = position(begin);
+    const Vec3 velocity = (position(end) - from) / (end - begin);
+    const auto later = [](double t, const TimedPoint& point) { return t < point.t; };
+    double most = 0.0;
+    for (auto p = std::upper_bound(points.begin(), points.end(), begin + path_.offset, later);
+         p != points.end() && p->t < end + path_.offset; ++p) {
+      most = std::max(most, (p->position - from - (p->t - path_.offset - begin) * velocity).norm());
+    }
+    return most;
+  }
+  /// From the nearer end of the step both have come at most half a step at the largest speed.
+  [[nodiscard]] double most_bend(double step) const { return fastest_ * step; }
+  [[nodiscard]] double uncertainty(const Clearance& clearance, double t) const {
+    const double moved = path_.velocity_sigma * (t + path_.age);
+    const double sigma = std::sqrt(path_.position_sigma * path_.position_sigma + moved * moved);
+    const double after = std::max(0.0, t + path_.offset - path_.points.back().t);
+    return std::min(clearance.limit,
+                    clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
+  }
+
+ private:
+  const KnownPath& path_;
+  double fastest_;
+};
 
 }  // namespace
 
-void MetObstacles::build(std::span<const Track> tracks, const Clearance& clearance, double step,
-                         std::span<const Box> where) {
+void MetObstacles::build(std::span<const Track> tracks, std::span<const KnownPath> paths, const Clearance& clearance,
+                         double step, std::span<const Box> where) {
   groups_.clear();
   found_.clear();
   step_.clear();
-  tracks_ = 0;
+  obstacles_ = 0;
   Box everywhere = where.front();
   for (std::size_t first = 0; first < where.size(); first += kGroup) {
     Group group{first, std::min(first + kGroup, where.size()), where[first]};
@@ -49,12 +104,10 @@ void MetObstacles::build(std::span<const Track> tracks, const Clearance& clearan
     everywhere = united(everywhere, group.where);
     groups_.push_back(group);
   }
-  const double horizon = step * static_cast<double>(where.size());
   for (const Track& track : tracks) {
-    const double travel = fastest(track, horizon, clearance.acceleration_trust) * horizon;
-    const double wanted = track.radius + clearance.hard + clearance.limit + travel + kSlack;
-    if (squared_distance(track.position, everywhere) < wanted * wanted) add(track, clearance, step, where);
+    add(TrackMotion(track, clearance.acceleration_trust), clearance, step, where, everywhere);
   }
+  for (const KnownPath& path : paths) add(PathMotion(path), clearance, step, where, everywhere);
 
   begin_.assign(where.size() + 1, 0);
   for (const std::size_t n : step_) ++begin_[n + 1];
@@ -64,29 +117,36 @@ void MetObstacles::build(std::span<const Track> tracks, const Clearance& clearan
   for (std::size_t i = 0; i < found_.size(); ++i) met_[next_[step_[i]]++] = found_[i];
 }
 
-void MetObstacles::add(const Track& track, const Clearance& clearance, double step, std::span<const Box> where) {
-  const double trust = clearance.acceleration_trust;
-  const double speed = fastest(track, step * static_cast<double>(where.size()), trust);
-  const double hard = track.radius + clearance.hard;
+template <typename Motion>
+void MetObstacles::add(const Motion& motion, const Clearance& clearance, double step, std::span<const Box> where,
+                       const Box& everywhere) {
+  const double horizon = step * static_cast<double>(where.size());
+  const double speed = motion.fastest(horizon);
+  const double hard = motion.radius() + clearance.hard;
+  const double most_bend = motion.most_bend(step);
+  const double ever = hard + clearance.limit + speed * horizon + most_bend + kSlack;
+  if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;
   const std::size_t before = found_.size();
   for (const Group& group : groups_) {
     const double begin = step * static_cast<double>(group.first);
+    if (begin >= motion.until()) break;
     const double half = 0.5 * step * static_cast<double>(group.last - group.first);
-    const double wanted = hard + clearance.limit + speed * half + kSlack;
-    if (squared_distance(predict_position(track, begin + half, trust), group.where) >= wanted * wanted) continue;
+    const double wanted = hard + clearance.limit + speed * half + most_bend + kSlack;
+    if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     MetObstacle obstacle;
-    obstacle.to = predict_position(track, begin, trust);
-    for (std::size_t n = group.first; n < group.last; ++n) {
+    obstacle.to = motion.position(begin);
+    for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
       const double end = static_cast<double>(n + 1) * step;
       obstacle.from = obstacle.to;
-      obstacle.to = predict_position(track, end, trust);
+      obstacle.to = motion.position(end);
       obstacle.middle = 0.5 * (obstacle.from + obstacle.to);
       const double moved = 0.5 * (obstacle.to - obstacle.from).norm();
-      const double most = hard + clearance.limit + moved + kSlack;
+      const double bent = hard + motion.bend(static_cast<double>(n) * step, end);
+      const double most = bent + clearance.limit + moved + kSlack;
       const double distance = squared_distance(obstacle.middle, where[n]);
       if (distance >= most * most) continue;
-      obstacle.hard = hard;
-      obstacle.soft = hard + uncertainty(track, clearance, end);
+      obstacle.hard = bent;
+      obstacle.soft = bent + motion.uncertainty(clearance, end);
       obstacle.near = obstacle.soft + moved + kSlack;
       obstacle.near_squared = obstacle.near * obstacle.near;
       if (distance >= obstacle.near_squared) continue;
@@ -94,7 +154,7 @@ void MetObstacles::add(const Track& track, const Clearance& clearance, double st
       step_.push_back(n);
     }
   }
-  if (found_.size() > before) ++tracks_;
+  if (found_.size() > before) ++obstacles_;
 }
 
 }  // namespace jink::planner

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "planner/known_path.hpp"
 #include "planner/types.hpp"
 
 namespace jink::planner {
@@ -20,7 +21,8 @@ struct Clearance {
   double acceleration_trust = kInfinity;  ///< as in predict_position
 };
 
-/// One obstacle during one step of the horizon, in which it moves evenly.
+/// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
+/// as much as it strays from even motion.
 struct MetObstacle {
   Vec3 from, to;        ///< its centre when the step begins and ends
   Vec3 middle;          ///< halfway
@@ -33,16 +35,18 @@ struct MetObstacle {
 /// thread-safe while build() runs; keeps its memory from one build to the next.
 class MetObstacles {
  public:
-  /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0. Within a step they keep
-  /// their order. O(tracks + near tracks · steps).
-  void build(std::span<const Track> tracks, const Clearance& clearance, double step, std::span<const Box> where);
+  /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
+  /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
+  /// the known paths), and for each near known path O(steps · log(points)).
+  void build(std::span<const Track> tracks, std::span<const KnownPath> paths, const Clearance& clearance, double step,
+             std::span<const Box> where);
 
   [[nodiscard]] std::span<const MetObstacle> during(int step) const {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
   }
-  /// How many tracks are met in at least one step.
-  [[nodiscard]] std::size_t tracks() const { return tracks_; }
+  /// How many tracks and known paths are met in at least one step.
+  [[nodiscard]] std::size_t obstacles() const { return obstacles_; }
 
  private:
   /// A number of steps, and where the vehicle is during all of them.
@@ -50,14 +54,16 @@ class MetObstacles {
     std::size_t first = 0, last = 0;
     Box where;
   };
-  void add(const Track& track, const Clearance& clearance, double step, std::span<const Box> where);
+  template <typename Motion>
+  void add(const Motion& motion, const Clearance& clearance, double step, std::span<const Box> where,
+           const Box& everywhere);
 
   std::vector<Group> groups_;
   std::vector<MetObstacle> found_, met_;  // by track, and by step
   std::vector<std::size_t> step_;         // of each found
   std::vector<std::size_t> begin_;        // of each step in met_, and the end
   std::vector<std::size_t> next_;
-  std::size_t tracks_ = 0;
+  std::size_t obstacles_ = 0;
 };
 
 }  // namespace jink::planner

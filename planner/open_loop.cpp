@@ -27,13 +27,17 @@ bool arrives(const TimedPath& path, const OpenLoopRequest& request) {
 
 Verification verify_whole(const TimedPath& path, const OpenLoopRequest& request) {
   return verify({path, request.path.tracks, 0.0, request.path.vehicle.radius, request.path.volume,
-                 request.path.acceleration_trust, kInfinity});
+                 request.path.acceleration_trust, kInfinity, request.path.paths});
 }
 
 bool start_blocked(const PathRequest& request) {
-  return std::any_of(request.tracks.begin(), request.tracks.end(), [&](const Track& track) {
-    return (track.position - request.position).norm() < track.radius + request.vehicle.radius;
-  });
+  const auto inside = [&](const Vec3& position, double radius) {
+    return (position - request.position).norm() < radius + request.vehicle.radius;
+  };
+  return std::any_of(request.tracks.begin(), request.tracks.end(),
+                     [&](const Track& track) { return inside(track.position, track.radius); }) ||
+         std::any_of(request.paths.begin(), request.paths.end(),
+                     [&](const KnownPath& path) { return inside(path.position(0.0), path.radius); });
 }
 
 /// Adds the first `keep` seconds of a part, which starts at time `t`, to the whole.
@@ -53,11 +57,19 @@ Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint6
   PathRequest from = request.path;
   std::vector<Track> now(request.path.tracks.size());
   from.tracks = now;
+  std::vector<KnownPath> paths(request.path.paths.begin(), request.path.paths.end());
+  from.paths = paths;
   TimedPath previous;
   double t = 0.0;
   for (std::uint64_t number = 0;; ++number) {
     std::transform(request.path.tracks.begin(), request.path.tracks.end(), now.begin(),
                    [&](const Track& track) { return predict(track, t, from.acceleration_trust); });
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const KnownPath& at_start = request.path.paths[i];
+      paths[i].offset = at_start.offset + t;
+      paths[i].age = at_start.age + t;
+      paths[i].until = at_start.until - t;
+    }
     const Plan part = planner.plan(from, previous, seed, number, budget, pool);
     if (part.status == PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;

@@ -124,7 +124,7 @@ void PathProblem::predict_obstacles() {
     where_[index(step)] = {before.min.cwiseMin(now.min), before.max.cwiseMax(now.max)};
     before = now;
   }
-  obstacles_.build(request_.tracks, clearance(), settings_.step, where_);
+  obstacles_.build(request_.tracks, request_.paths, clearance(), settings_.step, where_);
 }
 
 // The lanes that are left over repeat the last solution.
@@ -233,7 +233,7 @@ Cost PathProblem::cost_of(const TimedPath& path) const {
     where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
   }
   MetObstacles obstacles;
-  obstacles.build(request_.tracks, clearance(), settings_.step, where);
+  obstacles.build(request_.tracks, request_.paths, clearance(), settings_.step, where);
   PointLanes<1> position;
   position.set(positions[0]);
   MeterLanes<1> meter(scene_, obstacles, position);

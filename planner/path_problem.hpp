@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "planner/known_path.hpp"
 #include "planner/met_obstacles.hpp"
 #include "planner/path_scene.hpp"
 #include "planner/problem.hpp"
@@ -14,7 +15,7 @@
 
 namespace jink::planner {
 
-/// What a horizon plan starts from. Everything is valid at path time 0, tracks too.
+/// What a horizon plan starts from. Everything is valid at path time 0, tracks and the known paths' offsets too.
 struct PathRequest {
   Vec3 position = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
@@ -22,6 +23,7 @@ struct PathRequest {
   Box volume;
   VehicleLimits vehicle;
   std::span<const Track> tracks;
+  std::span<const KnownPath> paths{};     ///< of vehicles that say where they will be
   double margin = 0.0;                    ///< kept from every obstacle on top of the radii
   double track_acceleration = 0.0;        ///< what a track's acceleration may be off by, m/s²
   double acceleration_trust = kInfinity;  ///< as in predict_position
@@ -44,7 +46,7 @@ class PathProblem final : public Problem {
   explicit PathProblem(const HorizonSettings& settings);
 
   /// Prepares a plan: the frame, undisturbed flight, and for every step of the horizon the obstacles that can be met in
-  /// it. The request's tracks must stay as they are until the next call: cost_of() reads them again.
+  /// it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
   /// O(tracks + near tracks · steps); no allocation once it has seen as many obstacles.
   void prepare(const PathRequest& request);
 
@@ -71,7 +73,7 @@ class PathProblem final : public Problem {
   [[nodiscard]] int steps() const { return scene_.steps; }
   [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
   /// How many obstacles can be met within the horizon.
-  [[nodiscard]] std::size_t obstacles() const { return obstacles_.tracks(); }
+  [[nodiscard]] std::size_t obstacles() const { return obstacles_.obstacles(); }
 
  private:
   static constexpr int kMaxSteps = 256;

@@ -129,28 +129,106 @@ bool well_formed(const VerifierInput& input) {
     good = good && track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
            std::isfinite(track.radius) && std::isfinite(track.age);
   }
+  for (const KnownPath& known : input.known) good = good && known.well_formed();
   return good;
 }
 
-/// One vehicle segment against one track, split where the prediction stops accelerating.
-void check_segment(const TimedPoint& a, const TimedPoint& b, const Track& track, const VerifierInput& input,
-                   Verification& result) {
-  const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
-  const double end = std::min(b.t, input.until);
-  const double trust = believed(track, input);
-  const double change = input.tracks_time + trust;
-  double t = a.t;
-  while (t < end) {
-    const double stop = (change > t && change < end) ? change : end;
-    // Rounding must not put the instant at which the acceleration ends before its end.
-    const double elapsed = t < change ? t - input.tracks_time : std::max(t - input.tracks_time, trust);
-    const ObstacleAt obstacle(track, elapsed, trust);
-    const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
-                           -0.5 * obstacle.acceleration, stop - t};
-    fold(m, t, input.vehicle_radius + track.radius, track.id, result);
-    t = stop;
+/// A track as the check sees it. Times are the vehicle path's.
+class TrackMotion {
+ public:
+  TrackMotion(const Track& track, const VerifierInput& input)
+      : track_(track), tracks_time_(input.tracks_time), trust_(believed(track, input)) {}
+
+  [[nodiscard]] std::uint64_t id() const { return track_.id; }
+  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] double until() const { return kInfinity; }
+  [[nodiscard]] Vec3 position(double t) const { return ObstacleAt(track_, t - tracks_time_, trust_).position; }
+  /// The largest speed between two instants: the velocity changes along a straight line up to where the acceleration
+  /// ends, so that the speed is largest at one end.
+  [[nodiscard]] double fastest(double begin, double end) const {
+    const double first = ObstacleAt(track_, std::min(0.0, begin - tracks_time_), trust_).velocity.squaredNorm();
+    const double last = ObstacleAt(track_, end - tracks_time_, trust_).velocity.squaredNorm();
+    return std::sqrt(first > last ? first : last);
   }
-}
+
+  /// One vehicle segment, split where the prediction stops accelerating.
+  void check(const TimedPoint& a, const TimedPoint& b, const VerifierInput& input, Verification& result) const {
+    const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
+    const double end = std::min(b.t, input.until);
+    const double change = tracks_time_ + trust_;
+    double t = a.t;
+    while (t < end) {
+      const double stop = (change > t && change < end) ? change : end;
+      // Rounding must not put the instant at which the acceleration ends before its end.
+      const double elapsed = t < change ? t - tracks_time_ : std::max(t - tracks_time_, trust_);
+      const ObstacleAt obstacle(track_, elapsed, trust_);
+      const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
+                             -0.5 * obstacle.acceleration, stop - t};
+      fold(m, t, input.vehicle_radius + track_.radius, track_.id, result);
+      t = stop;
+    }
+  }
+
+ private:
+  const Track& track_;
+  double tracks_time_, trust_;
+};
+
+/// A known path as the check sees it: pieces of constant velocity, the one before point k being piece k, with a stand
+/// before the first point and after the last.
+class KnownMotion {
+ public:
+  KnownMotion(const KnownPath& path, const VerifierInput& input) : path_(path), tracks_time_(input.tracks_time) {}
+
+  [[nodiscard]] std::uint64_t id() const { return path_.id; }
+  [[nodiscard]] double radius() const { return path_.radius; }
+  [[nodiscard]] double until() const { return tracks_time_ + path_.until; }
+  [[nodiscard]] Vec3 position(double t) const { return on_piece(piece(t), t); }
+  [[nodiscard]] double fastest(double /*begin*/, double /*end*/) const { return path_.fastest(); }
+
+  /// One vehicle segment, split at the path's points.
+  void check(const TimedPoint& a, const TimedPoint& b, const VerifierInput& input, Verification& result) const {
+    const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
+    const double end = std::min({b.t, input.until, until()});
+    double t = a.t;
+    for (std::size_t k = piece(t); t < end; ++k) {
+      const double stop = k < path_.points.size() ? std::clamp(instant(k), t, end) : end;
+      if (stop > t) {
+        const RelativeMotion m{a.position + (t - a.t) * velocity - on_piece(k, t), velocity - velocity_on(k),
+                               Vec3::Zero(), stop - t};
+        fold(m, t, input.vehicle_radius + path_.radius, path_.id, result);
+      }
+      t = stop;
+    }
+  }
+
+ private:
+  [[nodiscard]] double instant(std::size_t k) const { return tracks_time_ + (path_.points[k].t - path_.offset); }
+  /// The piece that begins at t or holds it.
+  [[nodiscard]] std::size_t piece(double t) const {
+    std::size_t low = 0;
+    std::size_t high = path_.points.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      instant(middle) <= t ? low = middle + 1 : high = middle;
+    }
+    return low;
+  }
+  [[nodiscard]] Vec3 velocity_on(std::size_t k) const {
+    if (k == 0 || k == path_.points.size()) return Vec3::Zero();
+    const TimedPoint& from = path_.points[k - 1];
+    const TimedPoint& to = path_.points[k];
+    return (to.position - from.position) / (to.t - from.t);
+  }
+  [[nodiscard]] Vec3 on_piece(std::size_t k, double t) const {
+    if (k == 0) return path_.points.front().position;
+    if (k == path_.points.size()) return path_.points.back().position;
+    return path_.points[k - 1].position + (t - instant(k - 1)) * velocity_on(k);
+  }
+
+  const KnownPath& path_;
+  double tracks_time_;
+};
 
 /// Where the vehicle is during some segments: never farther than `radius` from `center`, where it is at time `t`, and
 /// that time never farther than `half` away.
@@ -176,30 +254,23 @@ struct Stretch {
   }
 };
 
-/// Bounds of the clearance to one track, to skip what can be neither the minimum nor a contact. It holds because an
-/// obstacle's velocity changes along a straight line up to where its acceleration ends, so that its speed is largest at
-/// one end.
+/// Bounds of the clearance to one obstacle, to skip what can be neither the minimum nor a contact. They follow from its
+/// largest speed.
+template <typename Motion>
 class Bound {
  public:
-  Bound(const Track& track, const VerifierInput& input, double begin, double end)
-      : track_(track),
-        tracks_time_(input.tracks_time),
-        trust_(believed(track, input)),
-        radius_(input.vehicle_radius + track.radius) {
-    const double first = ObstacleAt(track, std::min(0.0, begin - tracks_time_), trust_).velocity.squaredNorm();
-    const double last = ObstacleAt(track, end - tracks_time_, trust_).velocity.squaredNorm();
-    speed_ = std::sqrt(first > last ? first : last);
-  }
+  Bound(const Motion& motion, const VerifierInput& input, double begin, double end)
+      : motion_(motion), radius_(input.vehicle_radius + motion.radius()), speed_(motion.fastest(begin, end)) {}
 
   /// Whether the clearance can fall below zero or below `ceiling` while the vehicle is within `radius` of `center` and
-  /// time within `half` of `t`. Lowers `ceiling` to the clearance at `center` and `t`.
+  /// time within `half` of `t`. Lowers `ceiling` to the clearance at `center` and `t` where that counts.
   [[nodiscard]] bool matters(const Vec3& center, double t, double radius, double half, double& ceiling) const {
-    const Vec3 obstacle = ObstacleAt(track_, t - tracks_time_, trust_).position;
+    const Vec3 obstacle = motion_.position(t);
     const double distance = (center - obstacle).norm();
     const double travel = speed_ * half;
     const double scale = center.cwiseAbs().maxCoeff() + obstacle.cwiseAbs().maxCoeff() + radius + travel + 1.0;
     const double limit = std::max(0.0, ceiling);
-    ceiling = std::min(ceiling, distance - radius_);
+    if (t < motion_.until()) ceiling = std::min(ceiling, distance - radius_);
     // Not "less than": numbers so large that their sums overflow must be looked at.
     return !(distance - radius - travel - radius_ - kRounding * scale > limit);
   }
@@ -207,11 +278,11 @@ class Bound {
  private:
   // Of a sum of some ten numbers, relative to the largest: 64 times what they can amount to.
   static constexpr double kRounding = 1e-13;
-  const Track& track_;
-  double tracks_time_, trust_, radius_, speed_ = 0.0;
+  const Motion& motion_;
+  double radius_, speed_;
 };
 
-/// A path cut in stretches, for all tracks.
+/// A path cut in stretches, for all obstacles.
 class PathCheck {
  public:
   explicit PathCheck(const VerifierInput& input) : input_(input) {
@@ -225,9 +296,11 @@ class PathCheck {
     }
   }
 
-  void add(const Track& track, Verification& result) {
+  template <typename Motion>
+  void add(const Motion& motion, Verification& result) {
+    if (input_.path.size() == 1) add_place(motion, input_.path[0], result);
     if (count_ == 0) return;
-    const Bound bound(track, input_, input_.path.front().t, input_.path.back().t);
+    const Bound bound(motion, input_, input_.path.front().t, input_.path.back().t);
     if (!bound.matters(whole_.center, whole_.t, whole_.radius, whole_.half, ceiling_)) return;
     for (std::size_t n = 0; n < count_; ++n) {
       const Stretch& s = stretches_[n];
@@ -238,13 +311,20 @@ class PathCheck {
         const double half = 0.5 * (std::min(b.t, input_.until) - a.t);
         const Vec3 way = (half / (b.t - a.t)) * (b.position - a.position);
         if (!bound.matters(a.position + way, a.t + half, way.norm(), half, ceiling_)) continue;
-        check_segment(a, b, track, input_, result);
+        motion.check(a, b, input_, result);
         ceiling_ = std::min(ceiling_, result.min_clearance);
       }
     }
   }
 
  private:
+  template <typename Motion>
+  void add_place(const Motion& motion, const TimedPoint& place, Verification& result) const {
+    if (place.t >= motion.until()) return;
+    fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t,
+         input_.vehicle_radius + motion.radius(), motion.id(), result);
+  }
+
   static constexpr std::size_t kStretches = 12;
   const VerifierInput& input_;
   Stretch whole_;
@@ -263,15 +343,8 @@ Verification verify(const VerifierInput& input) {
     if (!input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
   }
   PathCheck check(input);
-  for (const Track& track : input.tracks) {
-    if (input.path.size() > 1) {
-      check.add(track, result);
-      continue;
-    }
-    const ObstacleAt obstacle(track, input.path[0].t - input.tracks_time, believed(track, input));
-    fold({input.path[0].position - obstacle.position, Vec3::Zero(), Vec3::Zero(), 0.0}, input.path[0].t,
-         input.vehicle_radius + track.radius, track.id, result);
-  }
+  for (const Track& track : input.tracks) check.add(TrackMotion(track, input), result);
+  for (const KnownPath& known : input.known) check.add(KnownMotion(known, input), result);
   return result;
 }
 

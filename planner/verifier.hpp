@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "planner/known_path.hpp"
 #include "planner/trajectory.hpp"
 #include "planner/types.hpp"
 
@@ -16,7 +17,7 @@ namespace jink::planner {
 struct Verification {
   double min_clearance = kInfinity;     ///< smallest distance from the vehicle's sphere to an obstacle's sphere
   double t_min_clearance = 0.0;         ///< when
-  std::uint64_t nearest_id = 0;         ///< to which track
+  std::uint64_t nearest_id = 0;         ///< to which track or known path
   std::optional<double> first_contact;  ///< first time at which a clearance falls below zero
   double contact_speed = 0.0;           ///< relative speed at the first contact
   bool inside_volume = true;            ///< the whole path lies in the volume
@@ -34,12 +35,13 @@ struct VerifierInput {
   Box volume;
   double acceleration_trust = kInfinity;  ///< as in predict_position, from the measurement on
   double until = kInfinity;               ///< path time up to which obstacles count
+  std::span<const KnownPath> known{};     ///< offsets and `until` count from `tracks_time`; margins do not count
 };
 
-/// Minimum over all instants, not samples: between two points and the instants at which a prediction changes, the
-/// squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9 m. What is
-/// certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
-/// each track that comes near; at worst O(points · tracks).
+/// Minimum over all instants, not samples: between two points and the instants at which a prediction changes or a known
+/// path turns, the squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9
+/// m. What is certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and
+/// points for each track that comes near; at worst O(points · tracks).
 Verification verify(const VerifierInput& input);
 
 }  // namespace jink::planner

@@ -172,7 +172,7 @@ TEST(TrackTable, TheSamePictureAgainAndAgainGoesStale) {
   TrackTable table(kCoast);
   feed(table, 10.0, 12.0, 0.03, 0.0);
   for (double t = 12.0; t < 20.0; t += 0.05) table.ingest(message(t, t - 11.92, {track(1, {11.92, 0, 0}, {1, 0, 0})}));
-  EXPECT_LE(table.newest_message(), 11.92 + TrackTable::kLongestDelay + 0.1);
+  EXPECT_LE(table.newest_message(), 11.92 + StampClock::kLongestDelay + 0.1);
   EXPECT_TRUE(table.predict(20.0, 1.0).empty());
 }
 

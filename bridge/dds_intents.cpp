@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/dds_intents.hpp"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "Intents.h"
+#include "bridge/dds_support.hpp"
+
+namespace jink::bridge {
+
+namespace {
+
+using planner::Vec3;
+
+constexpr std::size_t kWirePoint_bytes = 4 * 8;
+
+// In the order of the IDL. False where the path is longer than is looked at.
+bool take_intent(CdrInput& input, Intent& intent) {
+  intent.vehicle = input.take<std::uint64_t>();
+  Geodetic origin;
+  origin.latitude_deg = input.take<double>();
+  origin.longitude_deg = input.take<double>();
+  origin.altitude_m = input.take<double>();
+  const bool unknown =
+      std::isnan(origin.latitude_deg) && std::isnan(origin.longitude_deg) && std::isnan(origin.altitude_m);
+  if (!unknown) intent.origin = origin;
+  intent.radius = input.take<double>();
+  intent.margin = input.take<double>();
+  const std::uint32_t count = input.take_length(kWirePoint_bytes);
+  if (count > IntentLimits::kPoints) return false;
+  intent.path.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    planner::TimedPoint point;
+    point.t = input.take<double>();
+    const auto x = input.take<double>();
+    const auto y = input.take<double>();
+    point.position = Vec3(x, y, input.take<double>());
+    intent.path.push_back(point);
+  }
+  return true;
+}
+
+}  // namespace
+
+class DdsIntents::Impl {
+ public:
+  Impl(DdsNode& node, const Clock& clock)
+      : clock_(clock),
+        writer_(node, kIntentsTopic, kIntentsType),
+        reader_(node, kIntentsTopic, kIntentsType,
+                [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
+
+  bool poll(IntentMessage& message) {
+    const std::scoped_lock lock(mutex_);
+    if (newest_.empty()) return false;
+    message = std::move(newest_.begin()->second);
+    newest_.erase(newest_.begin());
+    return true;
+  }
+
+  bool publish(const Intent& intent) {
+    const double now = system_time();
+    const double sec = std::floor(now);
+    if (!(sec >= 0.0 && sec < 2147483648.0)) return false;  // ROS 2's stamp ends in 2038
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const Geodetic origin = intent.origin.value_or(Geodetic{kNan, kNan, kNan});
+    wire_.header().stamp().sec(static_cast<std::int32_t>(sec));
+    wire_.header().stamp().nanosec(static_cast<std::uint32_t>((now - sec) * 1e9));
+    wire_.header().frame_id("map");
+    wire_.vehicle(intent.vehicle);
+    wire_.origin_latitude(origin.latitude_deg);
+    wire_.origin_longitude(origin.longitude_deg);
+    wire_.origin_altitude(origin.altitude_m);
+    wire_.radius(intent.radius);
+    wire_.margin(intent.margin);
+    wire_.points().resize(intent.path.size());
+    for (std::size_t i = 0; i < intent.path.size(); ++i) {
+      const Vec3& position = intent.path[i].position;
+      wire_.points()[i].time(intent.path[i].t);
+      wire_.points()[i].position().x(position.x());
+      wire_.points()[i].position().y(position.y());
+      wire_.points()[i].position().z(position.z());
+    }
+    return writer_.write_message(wire_);
+  }
+
+  std::uint64_t identity() const { return writer_.identity(); }
+
+  IntentStatus status() const {
+    const std::scoped_lock lock(mutex_);
+    IntentStatus status = status_;
+    if (status.last_refusal.empty()) status.last_refusal = reader_.mismatch();
+    return status;
+  }
+
+ private:
+  // The payload as its writer's newest message, or refused. On Fast DDS's thread.
+  void accept(const Payload& payload, std::uint64_t writer) {
+    IntentMessage message;
+    message.writer = writer;
+    message.received = clock_.now();
+    StampedFrame header;
+    bool short_enough = true;
+    const bool whole = decode(payload, [&](CdrInput& input) {
+      header = take_header(input);
+      short_enough = take_intent(input, message.intent);
+      return true;
+    });
+    message.stamp_age = system_time() - header.stamp_unix_s;
+    std::string why;
+    if (!whole) {
+      why = "a payload that is no jink_msgs/Intent";
+    } else if (header.frame_id != "map") {
+      why = "frame_id '" + printable(header.frame_id) + "' is not 'map'";
+    } else if (!short_enough) {
+      why = "a path of more than " + std::to_string(IntentLimits::kPoints) + " points";
+    } else if (const char* bad = refusal(message.intent); bad != nullptr) {
+      why = "vehicle " + std::to_string(system_of(message.intent.vehicle)) + ": " + bad;
+    }
+    const std::scoped_lock lock(mutex_);
+    if (why.empty() && newest_.size() >= kWriters && !newest_.contains(writer)) why = "too many writers at once";
+    if (why.empty()) {
+      newest_[writer] = std::move(message);
+    } else {
+      ++status_.refused;
+      status_.last_refusal = why;
+    }
+  }
+
+  const Clock& clock_;
+  mutable std::mutex mutex_;  // guards newest_ and status_
+  std::map<std::uint64_t, IntentMessage> newest_;
+  IntentStatus status_;
+  jink_msgs::msg::dds_::Intent_ wire_;  // of publish(); reused
+  PayloadWriter writer_;
+  PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
+};
+
+DdsIntents::DdsIntents(DdsNode& node, const Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
+DdsIntents::~DdsIntents() = default;
+bool DdsIntents::poll(IntentMessage& message) {
+  return impl_->poll(message);
+}
+bool DdsIntents::publish(const Intent& intent) {
+  return impl_->publish(intent);
+}
+std::uint64_t DdsIntents::identity() const {
+  return impl_->identity();
+}
+IntentStatus DdsIntents::status() const {
+  return impl_->status();
+}
+
+}  // namespace jink::bridge

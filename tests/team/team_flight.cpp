@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/team/team_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <numbers>
+
+#include "bridge/frames.hpp"
+#include "planner/random.hpp"
+#include "sim/autopilot.hpp"
+
+namespace jink::team {
+namespace {
+
+const bridge::Geodetic kOrigin{47.397742, 8.545594, 488.0};
+constexpr double kTurn = 0.02;  // s, of the companions' loops
+
+/// The autopilot without MAVLink between. What the vehicle knows is in its own frame.
+class Link final : public bridge::VehicleLink {
+ public:
+  Link(sim::Autopilot& autopilot, const Vehicle& vehicle) : autopilot_(autopilot), vehicle_(vehicle) {
+    if (vehicle.knows_origin) origin_ = bridge::LocalFrame(kOrigin).to_geodetic(vehicle.origin);
+  }
+
+  bridge::VehicleState state() override {
+    const sim::Motion& motion = autopilot_.true_motion();
+    bridge::VehicleState state;
+    state.heartbeat_stamp = state.position_stamp = autopilot_.time();
+    state.armed = autopilot_.armed();
+    state.mode =
+        autopilot_.mode() == sim::FlightMode::kOffboard ? bridge::FlightMode::kOffboard : bridge::FlightMode::kHold;
+    state.position = motion.position - vehicle_.origin;
+    state.velocity = motion.velocity;
+    state.yaw = motion.yaw;
+    state.armable = autopilot_.prearm_ok();
+    state.local_position_ok = true;
+    state.in_air = autopilot_.landed_state() != sim::LandedState::kOnGround;
+    state.origin = origin_;
+    state.system_id = vehicle_.system_id;
+    return state;
+  }
+  bool send(const bridge::Setpoint& setpoint) override {
+    sim::Setpoint out;
+    out.position = Vec3(setpoint.position + vehicle_.origin);
+    out.velocity = setpoint.velocity;
+    out.acceleration = setpoint.acceleration;
+    out.yaw = setpoint.yaw;
+    return autopilot_.offboard_setpoint(out) == sim::Result::kAccepted;
+  }
+  void request(bridge::Command command) override {
+    if (command == bridge::Command::kOffboard) autopilot_.set_mode(6);
+    if (command == bridge::Command::kHold) autopilot_.hold();
+    if (command == bridge::Command::kArm) autopilot_.arm();
+  }
+  std::optional<bridge::CommandReport> next_report() override { return std::nullopt; }
+
+ private:
+  sim::Autopilot& autopilot_;
+  const Vehicle& vehicle_;
+  std::optional<bridge::Geodetic> origin_;
+};
+
+/// A writer that sees nothing.
+class NoTracks final : public bridge::TrackSource {
+ public:
+  bool poll(bridge::TrackMessage&) override { return false; }
+  [[nodiscard]] bridge::TrackSourceStatus status() const override { return {}; }
+};
+
+/// Everybody's intents, on their way to everybody.
+class Exchange {
+ public:
+  explicit Exchange(const Options& options) : options_(options), random_(options.seed, 77) {}
+
+  struct Letter {
+    double sent = 0.0, arrives = 0.0;
+    std::uint64_t writer = 0;
+    bridge::Intent intent;
+  };
+
+  void send(std::size_t from, std::uint64_t writer, const bridge::Intent& intent) {
+    for (std::size_t to = 0; to < boxes.size(); ++to) {
+      const double lost = random_.uniform(0.0, 1.0);
+      const double late = random_.uniform(0.0, 1.0);
+      // A transport delivers to its own process too.
+      if (to == from || lost >= options_.loss) {
+        boxes[to].push_back({now, now + options_.delay + late * options_.jitter, writer, intent});
+      }
+    }
+  }
+
+  double now = 0.0;
+  std::vector<std::deque<Letter>> boxes;
+
+ private:
+  Options options_;
+  planner::RandomStream random_;
+};
+
+class Transport final : public bridge::IntentTransport {
+ public:
+  Transport(Exchange& exchange, std::size_t number, const Vehicle& vehicle, double clock_offset)
+      : exchange_(exchange), number_(number), vehicle_(vehicle), clock_offset_(clock_offset) {}
+
+  bool poll(bridge::IntentMessage& message) override {
+    auto& box = exchange_.boxes[number_];
+    const auto letter =
+        std::find_if(box.begin(), box.end(), [&](const auto& l) { return l.arrives <= exchange_.now + 1e-9; });
+    if (letter == box.end() || !vehicle_.listens) return false;
+    // Stamped with the sender's system time, which is `clock_offset_` ahead for each number.
+    const double difference = clock_offset_ * (static_cast<double>(number_) - static_cast<double>(letter->writer - 1));
+    message = {letter->writer, exchange_.now, exchange_.now - letter->sent + difference, letter->intent};
+    box.erase(letter);
+    return true;
+  }
+  bool publish(const bridge::Intent& intent) override {
+    if (exchange_.now < vehicle_.silent_from) exchange_.send(number_, identity(), intent);
+    return true;
+  }
+  [[nodiscard]] std::uint64_t identity() const override { return number_ + 1; }
+  [[nodiscard]] bridge::IntentStatus status() const override { return {}; }
+
+ private:
+  Exchange& exchange_;
+  std::size_t number_;
+  const Vehicle& vehicle_;
+  double clock_offset_;
+};
+
+class Listener final : public bridge::FlightObserver {
+ public:
+  explicit Listener(Flown& flown) : flown_(flown) {}
+  void on_event(double, std::string_view name, const std::string& detail) override {
+    flown_.events.emplace_back(name, detail);
+  }
+
+ private:
+  Flown& flown_;
+};
+
+config::Mission mission_of(const Vehicle& vehicle, const Options& options) {
+  config::Mission mission;
+  mission.name = "team";
+  mission.connection = "virtual time";
+  mission.waypoints = {vehicle.target - vehicle.origin};
+  mission.arrival = config::Arrival::kHold;
+  mission.min_height = 1.0 - vehicle.origin.z();
+  mission.intents = vehicle.intents;
+  mission.tracks.required = false;
+  mission.time_limit = options.time_limit;
+  return mission;
+}
+
+sim::AutopilotOptions autopilot_of(const Vehicle& vehicle) {
+  sim::AutopilotOptions options;
+  options.position = vehicle.start;
+  options.airborne = true;
+  options.ready_delay = 0.0;
+  options.cascade.max_descent = options.limits.max_climb;
+  return options;
+}
+
+/// One vehicle with all that flies it.
+struct Member {
+  Member(const Vehicle& vehicle_, std::size_t number, Exchange& exchange, const config::Settings& settings,
+         const Options& options, Flown& flown)
+      : vehicle(vehicle_),
+        autopilot(autopilot_of(vehicle)),
+        link(autopilot, vehicle),
+        transport(exchange, number, vehicle, options.clock_offset),
+        listener(flown),
+        planner({settings.horizon, settings.optimizer, options.seed, options.threads},
+                1e-3 * settings.companion.planner_latency_ms),
+        companion(mission_of(vehicle, options), settings, {link, tracks, planner, {&listener}, &transport}) {}
+
+  Vehicle vehicle;
+  sim::Autopilot autopilot;
+  Link link;
+  NoTracks tracks;
+  Transport transport;
+  Listener listener;
+  bridge::VirtualPlanner planner;
+  bridge::Companion companion;
+  bool over = false;
+};
+
+void judge(const std::vector<std::unique_ptr<Member>>& members, double t, Result& result) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const planner::VehicleLimits limits;
+      const double apart =
+          (members[i]->autopilot.true_motion().position - members[j]->autopilot.true_motion().position).norm();
+      if (apart - 2.0 * limits.radius >= result.least_clearance) continue;
+      result.least_clearance = apart - 2.0 * limits.radius;
+      result.at = t;
+    }
+  }
+}
+
+}  // namespace
+
+bool Result::all_reached() const {
+  return std::all_of(vehicles.begin(), vehicles.end(),
+                     [](const Flown& f) { return f.summary.outcome == bridge::Outcome::kReached; });
+}
+
+double Result::last_arrival() const {
+  double last = 0.0;
+  for (const Flown& f : vehicles) last = std::max(last, f.arrived < 0.0 ? planner::kInfinity : f.arrived);
+  return last;
+}
+
+Result fly(const std::vector<Vehicle>& vehicles, const config::Settings& settings, const Options& options) {
+  Result result;
+  result.vehicles.resize(vehicles.size());
+  Exchange exchange(options);
+  exchange.boxes.resize(vehicles.size());
+  std::vector<std::unique_ptr<Member>> members;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    Vehicle vehicle = vehicles[i];
+    if (vehicle.system_id == 0) vehicle.system_id = static_cast<std::uint32_t>(i + 1);
+    members.push_back(std::make_unique<Member>(vehicle, i, exchange, settings, options, result.vehicles[i]));
+  }
+  const int steps_per_turn = static_cast<int>(std::lround(kTurn / sim::VehicleModel::kStep));
+  bool going = true;
+  for (int step = 0; going; ++step) {
+    const double t = members.front()->autopilot.time();
+    exchange.now = t;
+    judge(members, t, result);
+    if (step % steps_per_turn == 0) {
+      going = false;
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        Member& m = *members[i];
+        if (step % (5 * steps_per_turn) == 0) result.vehicles[i].trail.push_back(m.autopilot.true_motion().position);
+        if (m.over) continue;
+        going = true;
+        if (t + 1e-9 < m.vehicle.begins || m.companion.step(t)) continue;
+        m.over = true;
+        result.vehicles[i].arrived = t;
+      }
+    }
+    for (const auto& m : members) m->autopilot.step();
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) result.vehicles[i].summary = members[i]->companion.summary();
+  return result;
+}
+
+std::vector<Vehicle> swapping(double apart, double height) {
+  const Vec3 a(0, 0, height);
+  const Vec3 b(apart, 0, height);
+  return {{a, b}, {b, a}};
+}
+
+std::vector<Vehicle> crossing(int count, double radius, double height) {
+  std::vector<Vehicle> vehicles;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    const Vec3 out(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    const Vec3 middle(0, 0, height);
+    vehicles.push_back({middle + out, middle - out});
+  }
+  return vehicles;
+}
+
+}  // namespace jink::team
