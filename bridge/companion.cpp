@@ -19,7 +19,10 @@ constexpr double kLostReference = 1.2;     // m from the reference, beyond which
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
-constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
+constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
+constexpr double kLongStall = 1.0;    // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
+constexpr double kMarginStep = 0.05;  // m, of a grown margin that is worth saying
+constexpr double kSlack = 0.9;        // of a setpoint's period, after which the next may go
 
 SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   SupervisorSettings result;
@@ -83,6 +86,7 @@ bool Companion::step(double now) {
       waypoint.z() = mission_.min_height;
     }
   }
+  notice_stall(now);
   take_state(now);
   take_tracks(now);
   if (team_) team_->listen(now, state_);
@@ -99,6 +103,19 @@ bool Companion::step(double now) {
   announce(now);
   last_step_ = now;
   return !supervisor_.done();
+}
+
+// This process did not run for a while: what it followed is old, and after a second the autopilot's failsafe had the
+// vehicle, which would give it back without a word.
+void Companion::notice_stall(double now) {
+  const double stall = last_step_ < 0.0 ? 0.0 : now - last_step_;
+  const Phase phase = supervisor_.phase();
+  if (stall <= kStall || (phase != Phase::kClimbing && phase != Phase::kFlying)) return;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "this program did not run for %.1f s", stall);
+  event(now, "stalled", text.data());
+  summary_.hazards.push_back({text.data(), now - stall, stall});
+  if (stall > kLongStall) supervisor_.stop(now, Outcome::kAborted, text.data());
 }
 
 // An estimate that jumps takes along what is to be followed: the vehicle did not move.
@@ -358,7 +375,7 @@ void Companion::measure(double now) {
   summary_.max_speed = std::max(summary_.max_speed, state_.velocity.norm());
   if (last_position_) summary_.path_length += (state_.position - *last_position_).norm();
   last_position_ = state_.position;
-  if (stream_.active()) {
+  if (stream_.active() && now - state_.position_stamp <= settings_.companion.stale_state) {
     stream_.learn(state_.position_stamp, state_.position, std::max(0.0, now - last_step_));
     const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
     summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
@@ -369,7 +386,8 @@ void Companion::measure(double now) {
 void Companion::record_hazard(double now) {
   const std::string& hazard = supervisor_.hazard();
   if (hazard.empty()) return;
-  const bool goes_on = hazard == announced_hazard_ && !summary_.hazards.empty();
+  const bool goes_on =
+      hazard == announced_hazard_ && !summary_.hazards.empty() && summary_.hazards.back().what == hazard;
   if (!goes_on) summary_.hazards.push_back({hazard, now, 0.0});
   summary_.hazards.back().duration = now - summary_.hazards.back().t;
 }
@@ -403,7 +421,8 @@ void Companion::announce_vehicle(double now) {
     announced_battery_ = state_.battery;
     event(now, "battery", std::string(to_string(announced_battery_)));
   }
-  const bool grown = margin() > settings_.horizon.margin;
+  const double step = announced_margin_ ? 0.0 : kMarginStep;
+  const bool grown = margin() > settings_.horizon.margin + step;
   if (grown != announced_margin_ && supervisor_.phase() == Phase::kFlying) {
     announced_margin_ = grown;
     event(now, "margin",

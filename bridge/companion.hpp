@@ -100,6 +100,7 @@ class Companion {
   void move(double now, const Decision& decision);
   void brake(double now);
   void planner_failed(double now, const std::exception& failure);
+  void notice_stall(double now);
   void take_state(double now);
   void measure(double now);
   void record_hazard(double now);

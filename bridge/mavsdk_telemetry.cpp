@@ -303,6 +303,7 @@ void MavsdkLink::Impl::on_sys_status(const Message& message) {
   sys_status_heard_ = true;
   failed_health_ = px4::failed_health(present, enabled, health);
   state_.armable = (health & px4::kPrearmCheck) != 0U;
+  state_.gps_lost = (present & enabled & ~health & px4::kGps) != 0U;
   remaining_ = px4::battery_state_from_remaining(remaining);
   info_.battery_percent.reset();
   if (remaining_ != BatteryState::kUnknown) info_.battery_percent = remaining;

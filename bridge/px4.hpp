@@ -17,6 +17,8 @@ inline constexpr std::uint8_t kAutopilotInvalid = 8;       ///< MAV_AUTOPILOT_IN
 inline constexpr std::uint8_t kArmedFlag = 0x80;           ///< MAV_MODE_FLAG_SAFETY_ARMED of HEARTBEAT.base_mode
 inline constexpr std::uint32_t kPrearmCheck = 0x10000000;  ///< MAV_SYS_STATUS_PREARM_CHECK of SYS_STATUS
 
+inline constexpr std::uint32_t kGps = 0x20;  ///< MAV_SYS_STATUS_SENSOR_GPS
+
 inline constexpr std::uint16_t kNavLand = 21;              ///< MAV_CMD_NAV_LAND
 inline constexpr std::uint16_t kDoSetMode = 176;           ///< MAV_CMD_DO_SET_MODE
 inline constexpr std::uint16_t kArmDisarm = 400;           ///< MAV_CMD_COMPONENT_ARM_DISARM

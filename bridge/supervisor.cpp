@@ -343,6 +343,8 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
     hazard_ = "the autopilot's failsafe flies, mode " + std::string(to_string(state.mode));
   } else if (!state.local_position_ok) {
     hazard_ = "the autopilot has lost its position";
+  } else if (state.gps_lost) {
+    hazard_ = "the autopilot has lost its GPS";
   } else if (mission_.tracks.required && now - picture.newest_tracks > mission_.tracks.timeout_s) {
     hazard_ = "the obstacle tracks are stale";
   } else if (phase_ == Phase::kFlying && now - std::max(picture.newest_plan, entered_) > settings_.stale_plan) {

@@ -52,14 +52,22 @@ std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
 
 // What moves has not moved. Nothing where nothing moves.
 bool TrackTable::is_repetition(const TrackMessage& message) const {
+  const std::vector<Seen>& last = writers_.at(message.writer).last;
+  if (last.size() != message.tracks.size()) return false;
   bool any = false;
-  for (const planner::Track& track : message.tracks) {
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    const planner::Track& track = message.tracks[i];
     if (!(track.velocity.norm() > kMoving)) continue;
-    const auto known = entries_.find({message.writer, track.id});
-    if (known == entries_.end() || known->second.track.position != track.position) return false;
+    if (last[i].id != track.id || last[i].position != track.position) return false;
     any = true;
   }
   return any;
+}
+
+void TrackTable::remember(const TrackMessage& message) {
+  std::vector<Seen>& last = writers_.at(message.writer).last;
+  last.clear();
+  for (const planner::Track& track : message.tracks) last.push_back({track.id, track.position});
 }
 
 void TrackTable::ingest(const TrackMessage& message) {
@@ -72,6 +80,7 @@ void TrackTable::ingest(const TrackMessage& message) {
     ++counts_.frozen_messages;
     return;
   }
+  remember(message);
   const double measured = message.received - *delay;
   if (message.watches) newest_message_ = std::max(newest_message_, message.received);
   writers_[message.writer].believed = message.received;

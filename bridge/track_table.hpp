@@ -73,13 +73,19 @@ class TrackTable {
     double self_since = -1.0;  // where the vehicle is; negative: it is elsewhere
     bool is_self = false;
   };
+  struct Seen {
+    std::uint64_t id = 0;
+    planner::Vec3 position;
+  };
   struct Writer {
     StampClock clock;
+    std::vector<Seen> last;  // what the newest message that was taken in held
     double received = 0.0;
     double believed = -1.0;  // reception of the newest message that was taken in
   };
   std::optional<double> delay_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
+  void remember(const TrackMessage& message);
   void forget(double now);
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id

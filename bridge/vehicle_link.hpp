@@ -46,6 +46,7 @@ struct VehicleState {
   double yaw = 0.0;
   bool armable = false;            ///< the autopilot's own pre-arm checks pass
   bool local_position_ok = false;  ///< its estimator holds a local position
+  bool gps_lost = false;           ///< it has a GPS that it counts on, and that has no fix: the position will drift
   bool in_air = false;             ///< landed state says so (or taking off, landing)
   std::string health;              ///< what is missing, in the autopilot's terms; empty when nothing is
   bool failsafe = false;           ///< the autopilot's own failsafe flies: HEARTBEAT.system_status CRITICAL or worse

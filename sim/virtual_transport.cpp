@@ -199,6 +199,7 @@ bridge::VehicleState VirtualLink::snapshot() const {
   state.yaw = motion.yaw;
   state.armable = autopilot_.prearm_ok();
   state.local_position_ok = autopilot_.position_valid();
+  state.gps_lost = !autopilot_.estimator().gps();
   state.in_air = autopilot_.landed_state() != LandedState::kOnGround;
   state.health = state.local_position_ok ? "" : "local position";
   state.failsafe = autopilot_.heartbeat().system_status >= kStateCritical;

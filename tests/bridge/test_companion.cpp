@@ -506,6 +506,26 @@ TEST(Companion, DoesNotFleeFromItsOwnTrack) {
   EXPECT_EQ(loop.recorder.last("tracks_self"), "1 tracks are taken for this vehicle itself");
 }
 
+TEST(Companion, AfterAShortStallItGoesOnAfterALongOneItHolds) {
+  for (const double stall : {0.5, 1.5}) {
+    SCOPED_TRACE(stall);
+    Loop loop;
+    loop.airborne().fly();
+    loop.now += stall;
+    loop.run(3.0);
+    EXPECT_EQ(loop.recorder.count("stalled"), 1);
+    const FlightSummary summary = loop.companion.summary();
+    ASSERT_FALSE(summary.hazards.empty());
+    EXPECT_NEAR(summary.hazards[0].duration, stall, 0.05);
+    if (stall < 1.0) {
+      EXPECT_EQ(loop.companion.supervisor().phase(), Phase::kFlying);
+    } else {
+      EXPECT_EQ(loop.link.requests.back(), Command::kHold);
+      EXPECT_EQ(summary.reason, "this program did not run for 1.5 s");
+    }
+  }
+}
+
 TEST(Companion, TheSummaryHoldsEachHazardAndHowLongItLasted) {
   Loop loop;
   loop.airborne().fly();

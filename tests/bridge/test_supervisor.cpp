@@ -473,6 +473,8 @@ const std::vector<Hazard>& hazards() {
       {"tracks", [](Flight& f) { f.tracks = false; }, [](Flight& f) { f.tracks = true; }, 1.0, "tracks are stale",
        true},
       {"plan", [](Flight& f) { f.plans = false; }, [](Flight& f) { f.plans = true; }, 0.3, "planner is late", false},
+      {"GPS", [](Flight& f) { f.state.gps_lost = true; }, [](Flight& f) { f.state.gps_lost = false; }, 0.0,
+       "lost its GPS", true},
       {"estimator", [](Flight& f) { f.state.local_position_ok = false; },
        [](Flight& f) { f.state.local_position_ok = true; }, 0.0, "lost its position", true}};
   return all;

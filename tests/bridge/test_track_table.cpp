@@ -183,7 +183,7 @@ TEST(TrackTable, AFrozenPictureWithFreshStampsGoesStale) {
   for (double t = 10.0; t < 12.0; t += 0.05) table.ingest(message(t, 0.03, {track(1, {t, 0, 0}, {1, 0, 0}), still}));
   const Track stuck = track(1, {11.99, 0, 0}, {1, 0, 0});
   table.ingest(message(12.0, 0.03, {stuck, still}));
-  for (double t = 12.05; t < 15.0; t += 0.05) {
+  for (double t = 12.05; t < 15.0; t += 0.05) {  // longer than the tracks coast
     table.ingest(message(t, 0.03, {stuck, still}));
     if (t < 12.5) {
       EXPECT_NEAR(table.predict(t, 1.0)[0].position.x(), t, 0.1);  // predicted on meanwhile
