@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Failsafes: what flies when the stream, the position or the battery do not. The intended mode stays what it was, so that the
-// flight goes back to it by itself as soon as it can.
+// Failsafes: what flies when the stream, the position or the battery do not. The intended mode stays what it was, so
+// that the flight goes back to it by itself as soon as it can.
 #include <algorithm>
 
 #include "sim/autopilot.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A first-order Gauss-Markov process on three axes: gusts, and the errors of an estimate. The same bits on every machine.
+// A first-order Gauss-Markov process on three axes: gusts, and the errors of an estimate. The same bits on every
+// machine.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace jink::sim {
 
 /// Each axis has mean 0, standard deviation `deviation` and autocorrelation (1 - dt / time)^n after n steps, about
-/// exp(-t / time); a `time` of less than a step is white noise. It starts anywhere within its deviation. With a deviation of 0 it
-/// is zero and draws nothing.
+/// exp(-t / time); a `time` of less than a step is white noise. It starts anywhere within its deviation. With a
+/// deviation of 0 it is zero and draws nothing.
 class GaussMarkov {
  public:
   /// `deviation` and `time` (s) finite, not negative; `step` (s) positive.
