@@ -90,7 +90,8 @@ class Flight {
   std::vector<std::string> texts;
 };
 
-inline void expect_heartbeat(const Autopilot& autopilot, unsigned base_mode, std::uint32_t custom_mode, unsigned status) {
+inline void expect_heartbeat(const Autopilot& autopilot, unsigned base_mode, std::uint32_t custom_mode,
+                             unsigned status) {
   const Heartbeat heartbeat = autopilot.heartbeat();
   EXPECT_EQ(heartbeat.base_mode, base_mode);
   EXPECT_EQ(heartbeat.custom_mode, custom_mode);

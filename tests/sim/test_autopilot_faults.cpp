@@ -145,9 +145,8 @@ struct BatteryCase {
 };
 
 TEST(BatteryFault, ActsByItsParameterAfterATimeInHold) {
-  for (const BatteryCase& c :
-       {BatteryCase{2, 0.14, FlightMode::kOffboard}, BatteryCase{2, 0.06, FlightMode::kLand},
-        BatteryCase{3, 0.06, FlightMode::kReturn}, BatteryCase{3, 0.04, FlightMode::kLand}}) {
+  for (const BatteryCase& c : {BatteryCase{2, 0.14, FlightMode::kOffboard}, BatteryCase{2, 0.06, FlightMode::kLand},
+                               BatteryCase{3, 0.06, FlightMode::kReturn}, BatteryCase{3, 0.04, FlightMode::kLand}}) {
     SCOPED_TRACE(testing::Message() << "COM_LOW_BAT_ACT " << c.action << ", " << c.remaining);
     OffboardFlight flight;
     ASSERT_TRUE(flight.autopilot.parameters().set("COM_LOW_BAT_ACT", std::int32_t{c.action}));

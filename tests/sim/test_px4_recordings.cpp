@@ -115,7 +115,8 @@ void add(Story& story, double t, const mavlink_message_t& message) {
     case MAVLINK_MSG_ID_LOCAL_POSITION_NED: {
       mavlink_local_position_ned_t p;
       mavlink_msg_local_position_ned_decode(&message, &p);
-      story.positions_ned.push_back({t, Vec3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z))});
+      story.positions_ned.push_back(
+          {t, Vec3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z))});
       break;
     }
     default:
