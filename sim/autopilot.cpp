@@ -134,21 +134,16 @@ Result Autopilot::set_mode(unsigned main_mode, unsigned sub_mode) {
       case FlightMode::kLand:
         return land();
       default:  // no mission, nobody to follow, nothing known under that number
-        report(Severity::kCritical, "Switching to the requested AUTO mode is currently not available");
         return Result::kTemporarilyRejected;
     }
   }
   const auto mode = static_cast<FlightMode>(main_mode << 16U);
   if (mode == FlightMode::kOffboard) {
-    if (armed_ && (!stream_live() || !position_valid() || refuses_offboard_)) {
-      report(Severity::kCritical, "Switching to Offboard is currently not available");
-      return Result::kTemporarilyRejected;
-    }
+    if (armed_ && (!stream_live() || !position_valid() || refuses_offboard_)) return Result::kTemporarilyRejected;
     return change_mode(mode);
   }
   if (main_mode <= 0xFFU && is_manual(mode)) {
     if (!armed_ || remote_control_) return change_mode(mode);
-    report(Severity::kCritical, "Switching to a manual mode is currently not available: no manual control");
     return Result::kTemporarilyRejected;
   }
   return Result::kAccepted;
@@ -158,7 +153,6 @@ Result Autopilot::change_mode(FlightMode mode) {
   // OFFBOARD is checked before; of the modes flown by hand only this one needs to know where it is.
   const bool by_hand = is_manual(mode) && mode != FlightMode::kPosition;
   if (armed_ && !position_valid() && !by_hand && mode != FlightMode::kOffboard) {
-    report(Severity::kCritical, "Switching to the requested mode is currently not available: no valid position");
     return Result::kTemporarilyRejected;
   }
   // Whoever changes the mode in a battery's failsafe takes the flight over.

@@ -27,9 +27,11 @@ void Autopilot::set_battery(double remaining) {
 
 BatteryLevel Autopilot::battery_level() const {
   if (std::isnan(battery_)) return BatteryLevel::kUnknown;
-  if (battery_ < parameters_.real("BAT_EMERGEN_THR")) return BatteryLevel::kEmergency;
-  if (battery_ < parameters_.real("BAT_CRIT_THR")) return BatteryLevel::kCritical;
-  return battery_ < parameters_.real("BAT_LOW_THR") ? BatteryLevel::kLow : BatteryLevel::kOk;
+  // A parameter is a float: 0.15 of it is not below its own threshold.
+  const auto remaining = static_cast<double>(static_cast<float>(battery_));
+  if (remaining < parameters_.real("BAT_EMERGEN_THR")) return BatteryLevel::kEmergency;
+  if (remaining < parameters_.real("BAT_CRIT_THR")) return BatteryLevel::kCritical;
+  return remaining < parameters_.real("BAT_LOW_THR") ? BatteryLevel::kLow : BatteryLevel::kOk;
 }
 
 void Autopilot::reboot() {

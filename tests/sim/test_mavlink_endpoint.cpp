@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The endpoint over real loopback sockets on free ports, in virtual time.
-#include <development/mavlink.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -13,60 +12,14 @@
 #include <vector>
 
 #include "sim/mavlink_endpoint.hpp"
-#include "sim/udp_socket.hpp"
+#include "tests/sim/mavlink_client.hpp"
 
 namespace jink::sim {
 namespace {
 
-constexpr std::uint8_t kClientSystem = 245;
-constexpr std::uint8_t kClientComponent = 191;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint16_t kPositionOnly = 0x0DF8;
 constexpr std::uint16_t kVelocityOnly = 0x0DC7;
-
-/// The other end of a link: a socket and MAVLink's own parser.
-class Client {
- public:
-  Client() : socket_(udp_address("127.0.0.1", 0)) {}
-  [[nodiscard]] std::uint16_t port() const { return socket_.local_port(); }
-
-  template <typename Payload>
-  void send(std::uint16_t to,
-            std::uint16_t (*encode)(std::uint8_t, std::uint8_t, mavlink_status_t*, mavlink_message_t*, const Payload*),
-            const Payload& payload) {
-    mavlink_message_t message;
-    encode(kClientSystem, kClientComponent, &transmit_, &message, &payload);
-    std::array<std::uint8_t, MAVLINK_MAX_PACKET_LEN> frame{};
-    const auto length = mavlink_msg_to_send_buffer(frame.data(), &message);
-    send_raw(to, std::span(frame.data(), length));
-  }
-
-  void send_raw(std::uint16_t to, std::span<const std::uint8_t> bytes) {
-    ASSERT_TRUE(socket_.send(udp_address("127.0.0.1", to), bytes));
-  }
-
-  std::vector<mavlink_message_t> drain() {
-    std::vector<mavlink_message_t> messages;
-    std::array<std::uint8_t, 2048> buffer{};
-    UdpAddress from;
-    while (const auto length = socket_.receive(buffer, from)) {
-      for (std::size_t i = 0; i < *length; ++i) {
-        mavlink_message_t message;
-        mavlink_status_t status;
-        if (mavlink_frame_char_buffer(&partial_, &parser_, buffer[i], &message, &status) == MAVLINK_FRAMING_OK) {
-          messages.push_back(message);
-        }
-      }
-    }
-    return messages;
-  }
-
- private:
-  UdpSocket socket_;
-  mavlink_status_t transmit_{};
-  mavlink_status_t parser_{};
-  mavlink_message_t partial_{};
-};
 
 /// An autopilot, its endpoint, a companion and a ground station.
 class MavlinkEndpointTest : public testing::Test {
@@ -533,6 +486,122 @@ TEST_F(MavlinkEndpointTest, TextsGoToGroundStationsAloneInChunksEndingInATab) {
   EXPECT_EQ(count(heard, MAVLINK_MSG_ID_STATUSTEXT), 0U);
   EXPECT_EQ(count(heard_on_ground, MAVLINK_MSG_ID_STATUSTEXT), 2U);
   EXPECT_EQ(texts(), (std::vector<std::string>{"Arming denied: Resolve system health failures first\t"}));
+}
+
+TEST_F(AirborneEndpointTest, WithoutGpsPositionsStopAndTheHealthSaysWhy) {
+  run(1.0);
+  autopilot.set_gps(false);
+  run(1.0);
+  EXPECT_EQ(mavlink_msg_gps_raw_int_get_fix_type(&last(MAVLINK_MSG_ID_GPS_RAW_INT)), GPS_FIX_TYPE_NO_FIX);
+  const auto health = mavlink_msg_sys_status_get_onboard_control_sensors_health(&last(MAVLINK_MSG_ID_SYS_STATUS));
+  EXPECT_EQ(health & MAV_SYS_STATUS_SENSOR_GPS, 0U);
+  EXPECT_GT(count(heard, MAVLINK_MSG_ID_LOCAL_POSITION_NED), 50U);
+  run(4.1);
+  heard.clear();
+  run(2.0);
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_LOCAL_POSITION_NED), 0U);
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_GLOBAL_POSITION_INT), 0U);
+  const auto flags = mavlink_msg_estimator_status_get_flags(&last(MAVLINK_MSG_ID_ESTIMATOR_STATUS));
+  EXPECT_EQ(flags & (ESTIMATOR_POS_HORIZ_ABS | ESTIMATOR_POS_HORIZ_REL), 0);
+  EXPECT_NE(flags & ESTIMATOR_ATTITUDE, 0);
+  EXPECT_EQ(mavlink_msg_heartbeat_get_system_status(&last(MAVLINK_MSG_ID_HEARTBEAT)), MAV_STATE_CRITICAL);
+  autopilot.set_gps(true);
+  run(1.0);
+  EXPECT_GT(count(heard, MAVLINK_MSG_ID_LOCAL_POSITION_NED), 25U);
+}
+
+TEST_F(AirborneEndpointTest, AJumpIsSeenInThePositionAndTheResetCounter) {
+  command(MAV_CMD_REQUEST_MESSAGE, {331.0F});
+  mavlink_odometry_t before;
+  mavlink_msg_odometry_decode(&last(MAVLINK_MSG_ID_ODOMETRY), &before);
+  autopilot.jump_estimate({1.0, 2.0, 0.5});
+  command(MAV_CMD_REQUEST_MESSAGE, {331.0F});
+  mavlink_odometry_t after;
+  mavlink_msg_odometry_decode(&last(MAVLINK_MSG_ID_ODOMETRY), &after);
+  EXPECT_EQ(after.reset_counter, before.reset_counter + 1);
+  EXPECT_FLOAT_EQ(after.x - before.x, 2.0F);
+  EXPECT_FLOAT_EQ(after.y - before.y, 1.0F);
+  EXPECT_FLOAT_EQ(after.z - before.z, -0.5F);
+}
+
+TEST_F(AirborneEndpointTest, TellsOfTheBattery) {
+  struct Row {
+    double remaining;
+    int percent;
+    int state;
+  };
+  for (const Row& row :
+       {Row{1.0, 100, 1}, Row{0.12, 12, 2}, Row{0.06, 6, 3}, Row{0.02, 2, 4}, Row{std::nan(""), -1, 0}}) {
+    autopilot.set_battery(row.remaining);
+    run(2.1);
+    mavlink_battery_status_t battery;
+    mavlink_msg_battery_status_decode(&last(MAVLINK_MSG_ID_BATTERY_STATUS), &battery);
+    EXPECT_EQ(battery.battery_remaining, row.percent);
+    EXPECT_EQ(battery.charge_state, row.state);
+    EXPECT_EQ(mavlink_msg_sys_status_get_battery_remaining(&last(MAVLINK_MSG_ID_SYS_STATUS)), row.percent);
+  }
+}
+
+TEST_F(BootingEndpointTest, ARebootOnCommandStartsEverythingAnew) {
+  run(6.0);
+  ground_station_heartbeat();
+  ASSERT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {32, -1}), (Results{0}));
+  ASSERT_EQ(command(MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, {1}), (Results{0}));
+  EXPECT_EQ(autopilot.reboots(), 1);
+  run(0.2);
+  EXPECT_EQ(command(MAV_CMD_COMPONENT_ARM_DISARM, {1}), Results{});  // nobody listens yet
+  heard.clear();
+  heard_on_ground.clear();
+  run(0.9);
+  EXPECT_GT(count(heard, MAVLINK_MSG_ID_LOCAL_POSITION_NED), 20U);  // its rates are the default ones again
+  EXPECT_LT(mavlink_msg_attitude_get_time_boot_ms(&last(MAVLINK_MSG_ID_ATTITUDE)), 1200U);
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_HEARTBEAT), 0U);
+  run(1.0);
+  EXPECT_EQ(mavlink_msg_heartbeat_get_system_status(&last(MAVLINK_MSG_ID_HEARTBEAT)), MAV_STATE_UNINIT);
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), 1U);
+  EXPECT_EQ(command(MAV_CMD_COMPONENT_ARM_DISARM, {1}), (Results{1}));
+  EXPECT_EQ(count(heard_on_ground, MAVLINK_MSG_ID_STATUSTEXT), 0U);  // it knows of no ground station any more
+  run(3.0);
+  EXPECT_EQ(command(MAV_CMD_COMPONENT_ARM_DISARM, {1}), (Results{0}));
+}
+
+TEST_F(AirborneEndpointTest, AfterARebootElsewhereTheOriginIsThere) {
+  autopilot.reboot();
+  run(5.0);
+  ASSERT_TRUE(autopilot.landed());
+  ASSERT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {49.0F}), (Results{0}));
+  mavlink_gps_global_origin_t origin;
+  mavlink_msg_gps_global_origin_decode(&last(MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN), &origin);
+  EXPECT_NEAR(origin.latitude, 473977430 + 90, 3);   // 1 m north
+  EXPECT_NEAR(origin.longitude, 85455940 + 265, 5);  // 2 m east
+  ASSERT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {33.0F}), (Results{0}));
+  EXPECT_EQ(mavlink_msg_global_position_int_get_lat(&last(MAVLINK_MSG_ID_GLOBAL_POSITION_INT)), origin.latitude);
+  ASSERT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {32.0F}), (Results{0}));
+  EXPECT_NEAR(mavlink_msg_local_position_ned_get_x(&last(MAVLINK_MSG_ID_LOCAL_POSITION_NED)), 0.0, 1e-6);
+}
+
+TEST_F(AirborneEndpointTest, TheCompanionsHeartbeatAloneIsMissedInATextAndNoMore) {
+  ground_station_heartbeat();
+  mavlink_heartbeat_t heartbeat{};
+  heartbeat.type = MAV_TYPE_ONBOARD_CONTROLLER;
+  const auto stream = [&](double duration, bool alive) {
+    const double end = autopilot.time() + duration;
+    for (int i = 0; autopilot.time() < end; ++i) {
+      if (alive && i % 50 == 0) tell(mavlink_msg_heartbeat_encode_status, heartbeat);
+      setpoint(kPositionOnly, {1, 2, -3}, Vec3::Zero());
+      run(0.02);
+    }
+  };
+  stream(1.0, true);
+  ASSERT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
+  stream(3.0, true);
+  stream(4.0, false);
+  EXPECT_EQ(texts_with("Connection to mission computer lost"), 0U);
+  stream(3.0, false);
+  EXPECT_EQ(texts_with("Connection to mission computer lost"), 1U);
+  EXPECT_TRUE(autopilot.offboard_active());
+  stream(1.0, true);
+  EXPECT_EQ(texts_with("Onboard controller regained"), 1U);
 }
 
 mavlink_param_set_t param_set(const std::string& name, float value, int type) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "config/vehicle.hpp"
 #include "sim/vehicle_model.hpp"
 
 namespace jink::sim {
@@ -91,27 +93,85 @@ TEST(VehicleModel, FollowsTheFiveMetreStepMeasuredOnPx4) {
   EXPECT_LT(std::sqrt(speed_square / count), 0.1);
 }
 
+/// A row of the table measured on PX4's SITL, and how near the model comes to its settling.
 struct StepCase {
   Vec3 direction;
-  double distance, t10, t50, t90, top_speed;
+  double distance, t10, t50, t90, top_speed, acceleration, deceleration, overshoot, settled, settled_tolerance;
 };
 
 TEST(VehicleModel, FollowsTheOtherStepsMeasuredOnPx4) {
-  const std::vector<StepCase> cases{{Vec3::UnitX(), 5, 0.69, 1.45, 2.57, 2.79},
-                                    {Vec3::UnitY(), 10, 0.80, 1.67, 2.87, 5.05},
-                                    {Vec3::UnitX(), 20, 1.10, 2.26, 3.60, 8.0},
-                                    {Vec3::UnitZ(), 5, 0.44, 1.22, 2.55, 2.71},
-                                    {-Vec3::UnitZ(), 5, 0.55, 1.96, 3.61, 1.50}};
+  // The model's overshoot at 5 m is 6.5 % and slow: it leaves the band of 5 % 2.3 s later than PX4 did.
+  const std::vector<StepCase> cases{{Vec3::UnitX(), 5, 0.69, 1.45, 2.57, 2.79, 4.5, 1.6, 0.07, 3.8, 2.4},
+                                    {Vec3::UnitY(), 10, 0.80, 1.67, 2.87, 5.05, 6.1, 2.8, 0.05, 3.5, 0.6},
+                                    {Vec3::UnitX(), 20, 1.10, 2.26, 3.60, 8.0, 6.1, 4.3, 0.03, 4.1, 0.4},
+                                    {Vec3::UnitZ(), 5, 0.44, 1.22, 2.55, 2.71, 7.3, 2.1, 0.01, 3.0, 0.2},
+                                    {-Vec3::UnitZ(), 5, 0.55, 1.96, 3.61, 1.50, 4.5, 1.35, 0.01, 4.0, 0.2}};
   for (const StepCase& c : cases) {
-    const auto samples = step_response(large_limits(), c.direction, c.distance, 8.0);
+    const auto samples = step_response(large_limits(), c.direction, c.distance, 12.0);
+    double acceleration = 0;
+    double deceleration = 0;
+    double furthest = 0;
+    double settled = 0;
+    for (const Sample& s : samples) {
+      acceleration = std::max(acceleration, s.acceleration);
+      deceleration = std::max(deceleration, -s.acceleration);
+      furthest = std::max(furthest, s.distance);
+      if (std::abs(s.distance - c.distance) > 0.05 * c.distance) settled = s.t;
+    }
     SCOPED_TRACE(testing::Message() << c.distance << " m along " << c.direction.transpose());
-    EXPECT_NEAR(time_of(samples, 0.1 * c.distance), c.t10, 0.13);
+    EXPECT_NEAR(time_of(samples, 0.1 * c.distance), c.t10, 0.1);
     EXPECT_NEAR(time_of(samples, 0.5 * c.distance), c.t50, 0.15);
     EXPECT_NEAR(time_of(samples, 0.9 * c.distance), c.t90, 0.20);
-    EXPECT_NEAR(top_speed(samples), c.top_speed, 0.08 * c.top_speed);
-    EXPECT_LT(samples.back().distance, 1.08 * c.distance);
-    EXPECT_NEAR(samples.back().distance, c.distance, 0.06 * c.distance);
+    EXPECT_NEAR(top_speed(samples), c.top_speed, 0.05 * c.top_speed);
+    EXPECT_NEAR(acceleration, c.acceleration, 0.1 * c.acceleration);
+    EXPECT_NEAR(deceleration, c.deceleration, 0.25 * c.deceleration);
+    EXPECT_NEAR(furthest / c.distance - 1.0, c.overshoot, 0.015);
+    EXPECT_NEAR(settled, c.settled, c.settled_tolerance);
+    EXPECT_NEAR(samples.back().distance, c.distance, 0.05 * c.distance);
   }
+}
+
+TEST(VehicleModel, FollowsTheSmallStepsMeasuredOnPx4) {
+  // distance, t90, top speed, peak acceleration
+  const std::vector<std::array<double, 4>> cases{{1, 2.3, 0.60, 1.2}, {2, 2.4, 1.13, 2.2}};
+  for (const auto& [distance, t90, speed, acceleration] : cases) {
+    const auto samples = step_response(large_limits(), Vec3::UnitX(), distance, 8.0);
+    double peak = 0;
+    for (const Sample& s : samples) peak = std::max(peak, s.acceleration);
+    EXPECT_NEAR(time_of(samples, 0.9 * distance), t90, 0.15);
+    EXPECT_NEAR(top_speed(samples), speed, 0.05 * speed);
+    EXPECT_NEAR(peak, acceleration, 0.25 * acceleration);
+  }
+}
+
+TEST(VehicleModel, FollowsVerticalSpeedsAsFastAsPx4) {
+  for (const double speed : {1.0, -1.0}) {
+    VehicleModel model(large_limits(), Vec3(0, 0, 20), 0.0);
+    model.set_motors(Motors::kFlying);
+    Setpoint setpoint;
+    setpoint.velocity = {0, 0, speed};
+    model.set_setpoint(setpoint);
+    int steps = 0;
+    while (std::abs(model.motion().velocity.z()) < 0.632 && steps < 1000) {
+      model.step();
+      ++steps;
+    }
+    EXPECT_NEAR(steps * kStep, 0.3, 0.08);
+  }
+}
+
+TEST(VehicleModel, AParrotKeepsItsOwnLimits) {
+  const planner::VehicleLimits parrot = config::load_vehicle(JINK_SOURCE_DIR "/config/vehicles/ardrone2.yaml");
+  const auto level = step_response(parrot, Vec3::UnitX(), 40.0, 15.0);
+  EXPECT_GT(top_speed(level), 0.8 * parrot.max_speed);  // drag keeps it from the last of it
+  EXPECT_LE(top_speed(level), parrot.max_speed);
+  double acceleration = 0;
+  for (const Sample& s : level) acceleration = std::max(acceleration, std::abs(s.acceleration));
+  EXPECT_GT(acceleration, 0.7 * parrot.max_acceleration);
+  EXPECT_LE(acceleration, parrot.max_acceleration * (1 + 1e-9));
+  EXPECT_NEAR(top_speed(step_response(parrot, Vec3::UnitZ(), 20.0, 8.0)), parrot.max_climb, 0.05);
+  // PX4's own vehicle is faster.
+  EXPECT_GT(top_speed(step_response(large_limits(), Vec3::UnitX(), 40.0, 15.0)), 1.3 * top_speed(level));
 }
 
 TEST(VehicleModel, ReachesVelocitySetpointsAsSlowlyAsPx4) {
@@ -168,6 +228,7 @@ TEST(VehicleModel, NeverExceedsItsLimitsWhateverIsAsked) {
     limits.max_climb = uniform(0.3, 4.0);
     VehicleModel model(limits, Vec3(0, 0, 1000), 0.0);
     model.set_motors(Motors::kFlying);
+    model.set_wind({uniform(-6, 6), uniform(-6, 6), uniform(-1, 1)});
     for (int change = 0; change < 30; ++change) {
       Setpoint setpoint;
       const auto kind = generator() % 4;
@@ -280,6 +341,7 @@ TEST(VehicleModel, TurnsAsPx4) {
   setpoint.yaw = 90.0 * kDegree;
   model.set_setpoint(setpoint);
   model.set_motors(Motors::kFlying);
+  double t10 = 0;
   double t50 = 0;
   double t90 = 0;
   double fastest = 0;
@@ -288,16 +350,18 @@ TEST(VehicleModel, TurnsAsPx4) {
     const double t = i * kStep;
     model.step();
     const double yaw = model.motion().yaw;
+    if (t10 == 0 && yaw > 9 * kDegree) t10 = t;
     if (t50 == 0 && yaw > 45 * kDegree) t50 = t;
     if (t90 == 0 && yaw > 81 * kDegree) t90 = t;
     fastest = std::max(fastest, std::abs(model.motion().body_rates.z()));
     furthest = std::max(furthest, yaw);
   }
+  EXPECT_NEAR(t10, 0.34, 0.13);  // the model sets off sooner
   EXPECT_NEAR(t50, 0.65, 0.1);
   EXPECT_NEAR(t90, 0.93, 0.12);
   EXPECT_LE(fastest, 139.0 * kDegree * (1 + 1e-6));
   EXPECT_GT(fastest, 100.0 * kDegree);
-  EXPECT_LT(furthest, 1.16 * 90 * kDegree);
+  EXPECT_NEAR(furthest, 1.16 * 90 * kDegree, 0.06 * 90 * kDegree);
   EXPECT_NEAR(model.motion().yaw, 90 * kDegree, 1.0 * kDegree);
 }
 
