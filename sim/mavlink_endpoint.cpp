@@ -76,7 +76,7 @@ EndpointCounters MavlinkEndpoint::counters() const {
     sum.received += link.received();
     sum.malformed += link.malformed();
   }
-  sum.setpoints = impl_->setpoints();
+  sum.setpoints = impl_->links().front().setpoints();
   return sum;
 }
 
@@ -187,7 +187,6 @@ void MavlinkEndpoint::Impl::handle_position_target(const mavlink_message_t& mess
   mavlink_msg_set_position_target_local_ned_decode(&message, &target);
   const bool broadcast = target.target_system == 0 && target.target_component == MAV_COMP_ID_ALL;
   if (!broadcast && !for_us(target.target_system, target.target_component)) return;
-  ++setpoints_;
   const bool body = target.coordinate_frame == MAV_FRAME_BODY_NED;
   if (!body && target.coordinate_frame != MAV_FRAME_LOCAL_NED) {
     autopilot_.report(Severity::kCritical, "SET_POSITION_TARGET_LOCAL_NED coordinate frame " +

@@ -31,7 +31,7 @@ struct EndpointOptions {
 struct EndpointCounters {
   std::uint64_t received = 0;   ///< messages
   std::uint64_t malformed = 0;  ///< datagrams with something in them that is no MAVLink message
-  std::uint64_t setpoints = 0;  ///< for this autopilot, usable or not
+  std::uint64_t setpoints = 0;  ///< that the companion has sent, also those that an impaired link loses or holds back
 };
 
 /// Serves an autopilot that outlives it. Never blocks. Not thread-safe: one thread polls it and steps the autopilot.

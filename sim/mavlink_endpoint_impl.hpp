@@ -34,7 +34,6 @@ class MavlinkEndpoint::Impl {
   void poll(double now);
   void impair(const LinkImpairment& impairment) { links_.front().impair(impairment); }
   [[nodiscard]] const std::vector<MavlinkLink>& links() const { return links_; }
-  [[nodiscard]] std::uint64_t setpoints() const { return setpoints_; }
 
   /// One row of the table of what it can send.
   struct MessageKind {
@@ -127,7 +126,6 @@ class MavlinkEndpoint::Impl {
   LocalFrame frame_;
   std::uint8_t system_id_;
   double now_ = 0.0;
-  std::uint64_t setpoints_ = 0;
   double boot_ = 0.0;                      ///< when the autopilot booted, on the clock of `now_`
   int reboots_ = 0;                        ///< that the links know of
   std::optional<double> companion_heard_;  ///< its last heartbeat

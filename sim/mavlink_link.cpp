@@ -1,7 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/mavlink_link.hpp"
 
+#include <algorithm>
+
 namespace jink::sim {
+namespace {
+
+/// How many SET_POSITION_TARGET_LOCAL_NED a datagram of whole MAVLink 2 frames holds, by their headers alone.
+std::uint64_t count_setpoints(std::span<const std::uint8_t> datagram) {
+  constexpr std::size_t kHeader = 10;
+  constexpr std::size_t kChecksum = 2;
+  constexpr std::size_t kSignature = 13;
+  std::uint64_t count = 0;
+  while (datagram.size() >= kHeader && datagram[0] == MAVLINK_STX) {
+    const unsigned id =
+        datagram[7] | static_cast<unsigned>(datagram[8]) << 8U | static_cast<unsigned>(datagram[9]) << 16U;
+    if (id == MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED) ++count;
+    const bool is_signed = (datagram[2] & MAVLINK_IFLAG_SIGNED) != 0;
+    const std::size_t length = kHeader + datagram[1] + kChecksum + (is_signed ? kSignature : 0);
+    datagram = datagram.subspan(std::min(length, datagram.size()));
+  }
+  return count;
+}
+
+}  // namespace
 
 MavlinkLink::MavlinkLink(const UdpAddress& local, const UdpAddress& remote, std::uint8_t system_id, std::uint64_t seed)
     : socket_(local),
@@ -37,6 +59,7 @@ void MavlinkLink::receive(const std::function<void(const mavlink_message_t&)>& h
   UdpAddress from;
   while (const auto length = socket_.receive(buffer_, from)) {
     const std::span<const std::uint8_t> datagram(buffer_.data(), *length);
+    setpoints_ += count_setpoints(datagram);
     if (up_.clear()) {
       take(datagram, from, handle);
     } else {

@@ -49,6 +49,8 @@ class MavlinkLink {
 
   [[nodiscard]] std::uint64_t received() const { return received_; }
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
+  /// SET_POSITION_TARGET_LOCAL_NED in what came from the socket, before any impairment, whoever it is for.
+  [[nodiscard]] std::uint64_t setpoints() const { return setpoints_; }
 
   std::vector<Stream> streams;  ///< parallel to the endpoint's table of messages
   bool ground_station = false;  ///< a ground station's heartbeat has come
@@ -80,6 +82,7 @@ class MavlinkLink {
   std::array<std::uint8_t, 65536> buffer_{};
   std::uint64_t received_ = 0;
   std::uint64_t malformed_ = 0;
+  std::uint64_t setpoints_ = 0;
 };
 
 }  // namespace jink::sim

@@ -65,6 +65,38 @@ void Simulator::step() {
   ++steps_;
 }
 
+bool Simulator::Vehicle::owes_setpoint() const {
+  return autopilot.offboard_active() && endpoint->counters().setpoints == setpoints_before;
+}
+
+void Simulator::poll() {
+  for (Vehicle& vehicle : vehicles_) vehicle.endpoint->poll(now_);
+}
+
+void Simulator::begin_turn() {
+  for (Vehicle& vehicle : vehicles_) {
+    const std::uint64_t setpoints = vehicle.endpoint->counters().setpoints;
+    if (setpoints != vehicle.setpoints_before) vehicle.given_up = false;
+    vehicle.setpoints_before = setpoints;
+  }
+}
+
+bool Simulator::answered() const {
+  return std::none_of(vehicles_.begin(), vehicles_.end(),
+                      [](const Vehicle& vehicle) { return vehicle.owes_setpoint() && !vehicle.given_up; });
+}
+
+int Simulator::give_up() {
+  int count = 0;
+  for (std::size_t k = 0; k < vehicles_.size(); ++k) {
+    if (!vehicles_[k].owes_setpoint() || vehicles_[k].given_up) continue;
+    vehicles_[k].given_up = true;
+    ++count;
+    say("lockstep", named(static_cast<int>(k), "no setpoint from the companion: not waited for until one comes"));
+  }
+  return count;
+}
+
 double Simulator::scenario_time(double now) const {
   return clock_start_ ? std::max(0.0, now - *clock_start_) : 0.0;
 }

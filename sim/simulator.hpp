@@ -57,6 +57,15 @@ class Simulator {
   /// One step of VehicleModel::kStep: what has arrived is handled, what is due is sent, then the vehicles move.
   void step();
 
+  /// Takes what has arrived since, without time going on; for lockstep.
+  void poll();
+  /// For lockstep: the companions whose vehicles are in OFFBOARD owe a setpoint from now on.
+  void begin_turn();
+  /// Each of them has sent one since, or was given up and has not sent since that either.
+  [[nodiscard]] bool answered() const;
+  /// Whoever still owes one is not waited for until it sends again. Returns how many that is, with an event for each.
+  int give_up();
+
   /// Time since the start of the step made last.
   [[nodiscard]] double now() const { return now_; }
   [[nodiscard]] bool clock_runs() const { return clock_start_.has_value(); }
@@ -78,6 +87,10 @@ class Simulator {
     Autopilot autopilot;
     std::unique_ptr<MavlinkEndpoint> endpoint;
     bool was_at_start = false;
+    std::uint64_t setpoints_before = 0;  ///< those that had come when the turn began
+    bool given_up = false;
+
+    [[nodiscard]] bool owes_setpoint() const;
   };
 
   [[nodiscard]] double scenario_time(double now) const;

@@ -18,7 +18,10 @@ namespace {
 
 using planner::Vec3;
 
-constexpr int kLastInstance = 9;      // PX4's
+constexpr int kLastInstance = 9;  // PX4's
+constexpr int kTurnSteps = 5;     // of 4 ms: in lockstep a setpoint is waited for every 20 ms
+constexpr std::chrono::seconds kLongestWait{1};
+constexpr std::chrono::microseconds kPollPause{50};
 constexpr int kLiveSteps = 50;        // of 4 ms, between live lines
 constexpr double kPlainPeriod = 5.0;  // s, between lines where there is no terminal
 
@@ -33,6 +36,7 @@ struct SimOptions {
   int instance = 0;
   bool no_vehicle = false;
   bool no_tracks = false;
+  bool lockstep = false;
 };
 
 double unix_now() {
@@ -90,9 +94,23 @@ std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter
   return text + "  " + tracks;
 }
 
-/// Steps in real time (or `speed` times it) until the end; a late step is caught up.
-void run_in_real_time(sim::Simulator& simulator, const SimOptions& options, const Printer& printer,
-                      const bridge::DdsTrackWriter* writer) {
+/// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second.
+void wait_for_companions(sim::Simulator& simulator) {
+  const auto begun = std::chrono::steady_clock::now();
+  while (!simulator.answered() && !interrupted()) {
+    if (std::chrono::steady_clock::now() - begun > kLongestWait) {
+      simulator.give_up();
+      break;
+    }
+    std::this_thread::sleep_for(kPollPause);
+    simulator.poll();
+  }
+  simulator.begin_turn();
+}
+
+/// Steps in real time (or `speed` times it; a late step is caught up) or in lockstep, until the end.
+void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, const Printer& printer,
+                       const bridge::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
   const bool live = printer.terminal();
   const int period = live ? kLiveSteps : static_cast<int>(kPlainPeriod / sim::VehicleModel::kStep);
@@ -102,6 +120,10 @@ void run_in_real_time(sim::Simulator& simulator, const SimOptions& options, cons
     if (step > 0 && step % period == 0) {
       const std::string line = status(simulator, writer);
       live ? printer.live(line) : printer.line(line);
+    }
+    if (options.lockstep) {
+      if (step % kTurnSteps == kTurnSteps - 1) wait_for_companions(simulator);
+      continue;
     }
     std::this_thread::sleep_until(
         begun + std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -182,7 +204,7 @@ int run(const SimOptions& options) {
   choices.immediate_clock = options.clock == "immediate";
   sim::Simulator simulator(scenario, choices, {publish, {&teller}});
   introduce(scenario, options, printer);
-  run_in_real_time(simulator, options, printer, writer.get());
+  run_until_the_end(simulator, options, printer, writer.get());
   if (log) log->close();
   if (options.no_vehicle) return kExitReached;
   const auto summary = summary_of(simulator, options);
@@ -201,9 +223,15 @@ Subcommand add_sim(CLI::App& jink) {
       "sim", "simulate a PX4-style vehicle on UDP and the scenario's obstacles on DDS, without a screen");
   const auto options = std::make_shared<SimOptions>();
   app->add_option("SCENARIO", options->scenario, "scenario file")->required();
-  app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
-      ->check(CLI::Range(0.5, 20.0))
-      ->capture_default_str();
+  CLI::Option* speed = app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
+                           ->check(CLI::Range(0.5, 20.0))
+                           ->capture_default_str();
+  app->add_flag("--lockstep", options->lockstep,
+                "as fast as possible; but while a vehicle is armed in OFFBOARD, after every 20 ms of simulated time "
+                "wait until its companion has sent a setpoint in them. A companion that does not within 1 s is "
+                "reported and not waited for until it sends again. For companions that answer telemetry (ATTITUDE "
+                "comes at 99 Hz); one that keeps wall-clock time at 50 Hz makes it real time")
+      ->excludes(speed);
   app->add_option("--clock", options->clock,
                   "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
       ->check(CLI::IsMember({"start", "immediate"}))

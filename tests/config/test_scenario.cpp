@@ -252,6 +252,116 @@ TEST(LoadScenario, RefusesBadFurtherVehicles) {
   for (const BadCase& bad : cases) expect_refused(kTeam, bad, load);
 }
 
+const std::string kFaulty = kTeam +
+                            "wind: {mean: [1, 2, -0.5], gust: 0.7, gust_time: 3}\n"                               // 18
+                            "estimate: {position_noise: 0.1, velocity_noise: 0.2, drift: 0.3, drift_time: 40}\n"  // 19
+                            "faults:\n"                                                                           // 20
+                            "- {at: 12, kind: link_loss, for: 3, direction: up, vehicle: 1}\n"                    // 21
+                            "- {at: 0, kind: packet_loss, rate: 0.25}\n"                                          // 22
+                            "- {at: 1, kind: delay, seconds: 0.2, direction: down}\n"                             // 23
+                            "- {at: 2, kind: reorder, rate: 0.125}\n"                                             // 24
+                            "- {at: 3, kind: gps_loss}\n"                                                         // 25
+                            "- {at: 4, kind: estimate_jump, by: [3, 0, -1]}\n"                                    // 26
+                            "- {at: 5, kind: tracks_stop}\n"                                                      // 27
+                            "- {at: 6, kind: tracks_freeze}\n"                                                    // 28
+                            "- {at: 7, kind: track_noise, position: 0.6, velocity: 0.8}\n"                        // 29
+                            "- {at: 8, kind: id_swap}\n"                                                          // 30
+                            "- {at: 9, kind: tracks_garbage}\n"                                                   // 31
+                            "- {at: 10, kind: tracks_flood, count: 20000}\n"                                      // 32
+                            "- {at: 11, kind: tracks_self, vehicle: 2}\n"                                         // 33
+                            "- {at: 13, kind: tracks_clock, offset: -3600}\n"                                     // 34
+                            "- {at: 14, kind: reboot, vehicle: 0}\n"                                              // 35
+                            "- {at: 15, kind: pilot_mode, mode: altitude}\n"                                      // 36
+                            "- {at: 16, kind: low_battery, remaining: 0.05}\n"                                    // 37
+                            "- {at: 17, kind: refuse_arming}\n"                                                   // 38
+                            "- {at: 18, kind: refuse_offboard}\n";                                                // 39
+
+TEST(LoadScenario, ReadsWindAndEstimate) {
+  const Scenario plain = loaded(kValid);
+  EXPECT_EQ(plain.wind.mean, Vec3::Zero());
+  EXPECT_EQ(plain.wind.gust, 0.0);
+  EXPECT_EQ(plain.estimate.drift, 0.0);
+  EXPECT_TRUE(plain.faults.empty());
+  const Scenario s = loaded(kFaulty);
+  EXPECT_EQ(s.wind.mean, Vec3(1, 2, -0.5));
+  EXPECT_EQ(s.wind.gust, 0.7);
+  EXPECT_EQ(s.wind.gust_time, 3.0);
+  EXPECT_EQ(s.estimate.position_noise, 0.1);
+  EXPECT_EQ(s.estimate.velocity_noise, 0.2);
+  EXPECT_EQ(s.estimate.drift, 0.3);
+  EXPECT_EQ(s.estimate.drift_time, 40.0);
+}
+
+TEST(LoadScenario, ReadsEveryFault) {
+  const std::vector<Fault> faults = loaded(kFaulty).faults;
+  ASSERT_EQ(faults.size(), 19U);
+  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_EQ(faults[i].kind, static_cast<FaultKind>(i));
+  EXPECT_EQ(faults[0].at, 12.0);
+  EXPECT_EQ(faults[0].duration, 3.0);
+  EXPECT_EQ(faults[0].direction, LinkDirection::kUp);
+  EXPECT_EQ(faults[0].vehicle, 1);
+  EXPECT_TRUE(faults[0].befalls(1));
+  EXPECT_FALSE(faults[0].befalls(0));
+  EXPECT_EQ(faults[1].rate, 0.25);
+  EXPECT_EQ(faults[1].duration, std::nullopt);
+  EXPECT_EQ(faults[1].direction, LinkDirection::kBoth);
+  EXPECT_TRUE(faults[1].befalls(2));
+  EXPECT_EQ(faults[2].seconds, 0.2);
+  EXPECT_EQ(faults[2].direction, LinkDirection::kDown);
+  EXPECT_EQ(faults[3].rate, 0.125);
+  EXPECT_EQ(faults[5].by, Vec3(3, 0, -1));
+  EXPECT_EQ(faults[8].position, 0.6);
+  EXPECT_EQ(faults[8].velocity, 0.8);
+  EXPECT_EQ(faults[11].count, 20000);
+  EXPECT_EQ(faults[13].offset, -3600.0);
+  EXPECT_EQ(faults[15].mode, PilotMode::kAltitude);
+  EXPECT_EQ(faults[16].remaining, 0.05);
+  EXPECT_EQ(faults[0].text(), "link_loss, up, for 3 s, vehicle 1");
+  EXPECT_EQ(faults[5].text(), "estimate_jump, by [3, 0, -1]");
+  EXPECT_EQ(faults[15].text(), "pilot_mode, altitude");
+}
+
+TEST(LoadScenario, RefusesBadFaults) {
+  const std::vector<BadCase> cases = {
+      {"kind: link_loss", "kind: linkloss", 21, "faults[0].kind", "linkloss", "did you mean 'link_loss'?"},
+      {"kind: link_loss, ", "", 21, "faults[0].kind", "", "missing; expected one of link_loss, packet_loss"},
+      {"at: 12, ", "", 21, "faults[0].at", "", "missing; expected a number in [0, 1000000]"},
+      {"at: 12", "at: -1", 21, "faults[0].at", "-1", "is not in [0, 1000000]"},
+      {"for: 3", "for: 0", 21, "faults[0].for", "0", "is not in (0, 1000000]"},
+      {"for: 3", "fro: 3", 21, "faults[0].fro", "3", "did you mean 'for'?"},
+      {"direction: up", "direction: upp", 21, "faults[0].direction", "upp", "did you mean 'up'?"},
+      {"vehicle: 1}", "vehicle: 3}", 21, "faults[0].vehicle", "3", "is not in [0, 2]"},
+      {"vehicle: 1}", "vehicle: 0.5}", 21, "faults[0].vehicle", "0.5", "is not an integer"},
+      {"direction: up", "rate: 0.5", 21, "faults[0].rate", "0.5", "allowed: at, kind, for, vehicle, direction"},
+      {"rate: 0.25", "rate: 1.25", 22, "faults[1].rate", "1.25", "is not in [0, 1]"},
+      {", rate: 0.25", "", 22, "faults[1].rate", "", "missing"},
+      {"seconds: 0.2", "seconds: 61", 23, "faults[2].seconds", "61", "is not in [0, 60]"},
+      {"rate: 0.125", "rate: .nan", 24, "faults[3].rate", ".nan", "not a finite number"},
+      {"kind: gps_loss", "kind: gps_loss, direction: up", 25, "faults[4].direction", "up", "unknown key"},
+      {"by: [3, 0, -1]", "by: [3, 0]", 26, "faults[5].by", "[3, 0]", "[x, y, z]"},
+      {"by: [3, 0, -1]", "by: [3, 0, 1e9]", 26, "faults[5].by[2]", "1e9", "is not in [-10000, 10000]"},
+      {"by: [3, 0, -1]", "by: [3, 0, -1], for: 2", 26, "faults[5].for", "2", "happens at once; expected no 'for'"},
+      {"kind: tracks_stop", "kind: tracks_stop, vehicle: 0", 27, "faults[6].vehicle", "0", "unknown key"},
+      {"position: 0.6, velocity: 0.8", "for: 1", 29, "faults[8]", "", "has no noise; expected position"},
+      {"velocity: 0.8", "velocity: -0.8", 29, "faults[8].velocity", "-0.8", "is not in [0, 1000]"},
+      {"count: 20000", "count: 20001", 32, "faults[11].count", "20001", "is not in [1, 20000]"},
+      {"count: 20000", "count: 1.5", 32, "faults[11].count", "1.5", "is not an integer"},
+      {", offset: -3600", "", 34, "faults[13].offset", "", "missing"},
+      {"mode: altitude", "mode: offboard", 36, "faults[15].mode", "offboard",
+       "hold, position, altitude, land, return, manual"},
+      {"remaining: 0.05", "remaining: 5", 37, "faults[16].remaining", "5", "is not in [0, 1]"},
+      {"gust: 0.7", "gust: -0.7", 18, "wind.gust", "-0.7", "is not in [0, 100]"},
+      {"gust_time: 3", "gust_time: 0", 18, "wind.gust_time", "0", "is not in (0, 10000]"},
+      {"mean: [1, 2, -0.5]", "mean: [1, 200, 0]", 18, "wind.mean[1]", "200", "is not in [-100, 100]"},
+      {"drift: 0.3", "drft: 0.3", 19, "estimate.drft", "0.3", "did you mean 'drift'?"},
+      {"drift_time: 40", "drift_time: 0", 19, "estimate.drift_time", "0", "is not in (0, 1000000]"},
+  };
+  for (const BadCase& bad : cases) expect_refused(kFaulty, bad, load);
+  expect_contains(error_of([] { loaded(kValid + "faults: 3\n"); }), ":15: key 'faults': value '3' is a number");
+  expect_contains(error_of([] { loaded(kValid + "faults:\n- {at: 0, kind: reboot, vehicle: 1}\n"); }),
+                  "is not in [0, 0]");
+}
+
 TEST(LoadScenario, NamesTheLineOfAValueInALongList) {
   const std::string text = replaced(kValid, "start: [0, 0, 1.5]", "start:\n- 0\n- zero\n- 1.5");
   const TempFolder folder;

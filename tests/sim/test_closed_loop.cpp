@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -239,6 +240,122 @@ TEST(ClosedLoop, WaitsClearOfATargetThatStaysBlocked) {
     EXPECT_GT(flown.result.min_clearance, 0.0);
     EXPECT_GT(flown.result.flight.path_length, 5.0);  // it goes there to wait
   }
+}
+
+config::Fault fault(config::FaultKind kind, double at, std::optional<double> duration = std::nullopt) {
+  config::Fault f;
+  f.kind = kind;
+  f.at = at;
+  f.duration = duration;
+  return f;
+}
+
+/// A bit of everything that leaves the flight possible, in the default scenario.
+config::Scenario faulty_crossing() {
+  using config::FaultKind;
+  config::Scenario scenario = shipped("crossing");
+  scenario.time_limit = 6.0;
+  scenario.wind = {{0.5, 0.3, 0}, 0.2, 2.0};
+  scenario.estimate = {0.02, 0.02, 0.05, 10.0};
+  scenario.faults = {fault(FaultKind::kPacketLoss, 0),    fault(FaultKind::kReorder, 1, 2),
+                     fault(FaultKind::kDelay, 2, 1),      fault(FaultKind::kTracksGarbage, 1, 1),
+                     fault(FaultKind::kTrackNoise, 0, 2), fault(FaultKind::kTracksFlood, 3, 0.5),
+                     fault(FaultKind::kIdSwap, 2, 1)};
+  scenario.faults[0].rate = 0.2;
+  scenario.faults[1].rate = 0.2;
+  scenario.faults[2].seconds = 0.05;
+  scenario.faults[4].position = 0.05;
+  scenario.faults[5].count = 500;
+  return scenario;
+}
+
+TEST(ClosedLoop, FaultsAreTheSameToTheBitAtAnyThreadCountAndAnotherSeedIsAnotherFlight) {
+  const config::Scenario scenario = faulty_crossing();
+  const config::Settings settings = shipped_settings({"horizon.generations=6"});
+  const Flown one = fly(scenario, settings, 7, 1);
+  EXPECT_GT(one.hash.plans, 20);
+  for (const int threads : {2, 8}) {
+    const Flown other = fly(scenario, settings, 7, threads);
+    EXPECT_EQ(other.hash.value, one.hash.value) << threads;
+    EXPECT_EQ(other.hash.events, one.hash.events) << threads;
+  }
+  EXPECT_NE(fly(scenario, settings, 8, 2).hash.value, one.hash.value);
+}
+
+TEST(ClosedLoop, EachFaultsBeginningAndEndIsAnEvent) {
+  config::Scenario scenario = straight();
+  scenario.faults = {fault(config::FaultKind::kIdSwap, 0.5, 0.5)};
+  const std::vector<std::string> events = fly(scenario, quick_settings()).hash.events;
+  EXPECT_NE(std::find(events.begin(), events.end(), "fault: id_swap, for 0.5 s begins"), events.end());
+  EXPECT_NE(std::find(events.begin(), events.end(), "fault: id_swap, for 0.5 s ends"), events.end());
+}
+
+/// The largest time between two states that differ in their stamp, and what else the companion was told.
+class StateWatch final : public bridge::FlightObserver {
+ public:
+  void on_state(double t, const bridge::VehicleState& state) override {
+    oldest = std::max(oldest, t - state.position_stamp);
+    resets = std::max(resets, state.estimate_resets);
+    shift = state.estimate_shift;
+    low_battery = low_battery || state.battery != bridge::BatteryState::kOk;
+    lost_position = lost_position || !state.local_position_ok;
+    piloted = piloted || state.mode == bridge::FlightMode::kPosition;
+    disarmed = disarmed || !state.armed;
+  }
+  double oldest = 0.0;
+  std::uint32_t resets = 0;
+  Vec3 shift = Vec3::Zero();
+  bool low_battery = false, lost_position = false, piloted = false, disarmed = false;
+};
+
+StateWatch watched(const config::Fault& what, double target = 30.0) {
+  config::Scenario scenario = straight();
+  scenario.target = {target, 0, 1.5};
+  scenario.faults = {what};
+  StateWatch watch;
+  ClosedLoopOptions options;
+  options.flight_observers = {&watch};
+  static_cast<void>(fly_closed_loop(scenario, quick_settings(), options));
+  return watch;
+}
+
+TEST(ClosedLoop, TheCompanionSeesWhatBefallsTheVehicle) {
+  using config::FaultKind;
+  const StateWatch fine = watched(fault(FaultKind::kIdSwap, 1));
+  EXPECT_LT(fine.oldest, 0.001);
+  EXPECT_FALSE(fine.low_battery || fine.lost_position || fine.piloted || fine.disarmed);
+  EXPECT_EQ(fine.resets, 0U);
+
+  EXPECT_GT(watched(fault(FaultKind::kLinkLoss, 1, 0.4)).oldest, 0.37);
+  config::Fault up = fault(FaultKind::kLinkLoss, 1, 0.4);
+  up.direction = config::LinkDirection::kUp;
+  EXPECT_LT(watched(up).oldest, 0.001);
+
+  config::Fault jump = fault(FaultKind::kEstimateJump, 1);
+  jump.by = {0.5, -0.25, 0};
+  const StateWatch jumped = watched(jump);
+  EXPECT_EQ(jumped.resets, 1U);
+  EXPECT_NEAR((jumped.shift - jump.by).norm(), 0.0, 1e-9);
+
+  config::Fault low = fault(FaultKind::kLowBattery, 1);
+  low.remaining = 0.12;
+  EXPECT_TRUE(watched(low).low_battery);
+  EXPECT_TRUE(watched(fault(FaultKind::kGpsLoss, 1)).lost_position);
+  config::Fault pilot = fault(FaultKind::kPilotMode, 1);
+  pilot.mode = config::PilotMode::kPosition;
+  EXPECT_TRUE(watched(pilot).piloted);
+  EXPECT_TRUE(watched(fault(FaultKind::kReboot, 1)).disarmed);
+}
+
+TEST(ClosedLoop, WindPushesAndAnEstimateErrs) {
+  config::Scenario scenario = straight();
+  const Flown calm = fly(scenario, quick_settings());
+  scenario.wind.mean = {0, 1.5, 0};
+  const Flown windy = fly(scenario, quick_settings());
+  EXPECT_GT(windy.hash.farthest_aside, calm.hash.farthest_aside + 0.02);
+  scenario.wind = {};
+  scenario.estimate.position_noise = 0.1;
+  EXPECT_NE(fly(scenario, quick_settings()).hash.value, calm.hash.value);
 }
 
 TEST(ClosedLoop, TheMissionThatStandsForAScenario) {

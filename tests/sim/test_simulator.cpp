@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -183,6 +185,198 @@ TEST(Simulator, WithoutVehiclesTheObstaclesMoveAtOnce) {
   EXPECT_TRUE(simulator.reports().empty());
   ASSERT_FALSE(messages.empty());
   EXPECT_NEAR(messages.back().tracks.at(0).position.y(), -7.0, 1e-9);
+}
+
+config::Fault fault(config::FaultKind kind, double at, std::optional<double> duration = std::nullopt) {
+  config::Fault f;
+  f.kind = kind;
+  f.at = at;
+  f.duration = duration;
+  return f;
+}
+
+/// How many messages came to each companion in `seconds`.
+std::vector<std::size_t> heard(Stage& stage, double seconds) {
+  for (LoopbackCompanion& companion : stage.companions) companion.drain();
+  std::vector<std::size_t> counts(stage.companions.size());
+  for (int step = 0; step < static_cast<int>(seconds / VehicleModel::kStep); ++step) {
+    stage.simulator->step();
+    for (std::size_t k = 0; k < counts.size(); ++k) counts[k] += stage.companions[k].drain().size();
+  }
+  return counts;
+}
+
+// `at: 0` is in force from the start, while the scenario's clock stands.
+TEST(Simulator, ALinkIsLostDownwardsForTheVehicleThatIsNamed) {
+  config::Scenario scenario = two_vehicles();
+  scenario.faults = {fault(config::FaultKind::kLinkLoss, 0)};
+  scenario.faults[0].direction = config::LinkDirection::kDown;
+  scenario.faults[0].vehicle = 1;
+  Stage stage(scenario);
+  const auto counts = heard(stage, 5.0);
+  EXPECT_GT(counts[0], 500U);
+  EXPECT_EQ(counts[1], 0U);
+  EXPECT_TRUE(stage.said("fault: fault: link_loss, down, vehicle 1 begins"));
+  // Upwards it works.
+  stage.companions[1].setpoint({0, 3, 1.5});
+  stage.simulator->step();
+  EXPECT_TRUE(stage.simulator->autopilot(1).stream_live());
+}
+
+TEST(Simulator, ALinkIsLostUpwards) {
+  config::Scenario scenario = two_vehicles();
+  scenario.faults = {fault(config::FaultKind::kLinkLoss, 0)};
+  scenario.faults[0].direction = config::LinkDirection::kUp;
+  Stage stage(scenario);
+  EXPECT_GT(heard(stage, 5.0)[0], 500U);
+  stage.companions[0].setpoint({0, 0, 1.5});
+  stage.simulator->step();
+  EXPECT_FALSE(stage.simulator->autopilot(0).stream_live());
+}
+
+TEST(Simulator, PacketsAreLostAtTheirRate) {
+  const auto count = [](double rate) {
+    config::Scenario scenario = two_vehicles();
+    scenario.faults = {fault(config::FaultKind::kPacketLoss, 0)};
+    scenario.faults[0].rate = rate;
+    Stage stage(scenario);
+    return static_cast<double>(heard(stage, 8.0)[0]);
+  };
+  const double all = count(0.0);
+  EXPECT_NEAR(count(0.2) / all, 0.8, 0.05);
+}
+
+TEST(Simulator, PacketsAreLateBothWays) {
+  config::Scenario scenario = two_vehicles();
+  scenario.faults = {fault(config::FaultKind::kDelay, 0)};
+  scenario.faults[0].seconds = 0.2;
+  Stage stage(scenario);
+  stage.simulator->step();
+  stage.companions[0].setpoint({0, 0, 1.5});
+  for (int step = 0; step < 48; ++step) stage.simulator->step();
+  EXPECT_FALSE(stage.simulator->autopilot(0).stream_live());
+  for (int step = 0; step < 5; ++step) stage.simulator->step();
+  EXPECT_TRUE(stage.simulator->autopilot(0).stream_live());
+  // What the vehicle says of itself is 0.2 s old.
+  stage.companions[0].drain();
+  heard(stage, 3.0);
+  bool seen = false;
+  for (int step = 0; step < 100; ++step) {
+    stage.simulator->step();
+    for (const mavlink_message_t& message : stage.companions[0].drain()) {
+      if (message.msgid != MAVLINK_MSG_ID_LOCAL_POSITION_NED) continue;
+      const double told = 1e-3 * mavlink_msg_local_position_ned_get_time_boot_ms(&message);
+      EXPECT_NEAR(stage.simulator->now() - told, 0.2, 0.01);
+      seen = true;
+    }
+  }
+  EXPECT_TRUE(seen);
+}
+
+TEST(Simulator, PacketsComeOutOfOrder) {
+  const auto disorder = [](double rate) {
+    config::Scenario scenario = two_vehicles();
+    scenario.faults = {fault(config::FaultKind::kReorder, 0)};
+    scenario.faults[0].rate = rate;
+    Stage stage(scenario);
+    int count = 0;
+    int last = -1;
+    for (int step = 0; step < 1500; ++step) {
+      stage.simulator->step();
+      for (const mavlink_message_t& message : stage.companions[0].drain()) {
+        const int ahead = last < 0 ? 1 : (message.seq - last + 256) % 256;
+        count += ahead > 128;
+        last = message.seq;
+      }
+    }
+    return count;
+  };
+  EXPECT_EQ(disorder(0.0), 0);
+  EXPECT_GT(disorder(0.1), 50);
+}
+
+TEST(Simulator, TracksStopOnceTheScenarioClockSaysSo) {
+  config::Scenario scenario = two_vehicles();
+  scenario.vehicles.clear();
+  scenario.obstacles = {ball(0.5, {3, -8, 1.5})};
+  scenario.faults = {fault(config::FaultKind::kTracksStop, 1, 2)};
+  Stage stage(scenario);
+  for (int step = 0; step < 1250; ++step) stage.simulator->step();
+  EXPECT_EQ(stage.publications.size(), 100U);  // the clock stands: no fault yet
+  ASSERT_TRUE(stage.run(40.0, {scenario.start}, [&] { return stage.simulator->clock_runs(); }));
+  const double begun = stage.simulator->now();
+  stage.run(5.0, {scenario.start}, [] { return false; });
+  const auto within = [&](double from, double to) {
+    return std::count_if(stage.publications.begin(), stage.publications.end(),
+                         [&](const auto& p) { return p.now > begun + from + 0.01 && p.now < begun + to - 0.01; });
+  };
+  EXPECT_GE(within(0, 1), 18);
+  EXPECT_EQ(within(1, 3), 0);
+  EXPECT_GE(within(3, 5), 37);
+  EXPECT_TRUE(stage.said("fault: fault: tracks_stop, for 2 s begins"));
+  EXPECT_TRUE(stage.said("fault: fault: tracks_stop, for 2 s ends"));
+}
+
+TEST(Simulator, FaultsBefallTheAutopilotThatIsNamed) {
+  config::Scenario scenario = two_vehicles();
+  scenario.faults = {fault(config::FaultKind::kLowBattery, 0), fault(config::FaultKind::kReboot, 0)};
+  scenario.faults[0].remaining = 0.3;
+  scenario.faults[0].vehicle = 0;
+  scenario.faults[1].vehicle = 1;
+  Stage stage(scenario);
+  stage.simulator->step();
+  EXPECT_EQ(stage.simulator->autopilot(0).battery(), 0.3);
+  EXPECT_EQ(stage.simulator->autopilot(1).battery(), 1.0);
+  EXPECT_EQ(stage.simulator->autopilot(0).reboots(), 0);
+  EXPECT_EQ(stage.simulator->autopilot(1).reboots(), 1);
+}
+
+TEST(Simulator, InLockstepEveryCompanionInOffboardOwesASetpoint) {
+  const config::Scenario scenario = two_vehicles();
+  Stage stage(scenario);
+  Simulator& simulator = *stage.simulator;
+  simulator.begin_turn();
+  EXPECT_TRUE(simulator.answered());  // nobody is in OFFBOARD
+  const std::vector<std::optional<Vec3>> starts{scenario.start, scenario.vehicles[0].start};
+  ASSERT_TRUE(stage.run(40.0, starts, [&] { return simulator.clock_runs(); }));
+  simulator.begin_turn();
+  EXPECT_FALSE(simulator.answered());
+  stage.companions[0].setpoint(scenario.start);
+  const double before = simulator.now();
+  simulator.poll();
+  EXPECT_FALSE(simulator.answered());  // one of two
+  stage.companions[1].setpoint(scenario.vehicles[0].start);
+  simulator.poll();
+  EXPECT_TRUE(simulator.answered());
+  EXPECT_EQ(simulator.now(), before);  // time has not gone on
+
+  simulator.begin_turn();
+  EXPECT_FALSE(simulator.answered());
+  EXPECT_EQ(simulator.give_up(), 2);
+  EXPECT_TRUE(simulator.answered());
+  simulator.begin_turn();
+  EXPECT_TRUE(simulator.answered());  // still given up
+  EXPECT_EQ(simulator.give_up(), 0);
+  stage.companions[0].setpoint(scenario.start);
+  simulator.poll();
+  simulator.begin_turn();
+  EXPECT_FALSE(simulator.answered());  // waited for again
+}
+
+// An answer counts when it is sent: a link that holds it back must not hold time back too.
+TEST(Simulator, InLockstepALateSetpointIsAnAnswer) {
+  config::Scenario scenario = two_vehicles();
+  scenario.vehicles.clear();
+  scenario.faults = {fault(config::FaultKind::kDelay, 0.1)};
+  scenario.faults[0].seconds = 0.5;
+  Stage stage(scenario);
+  ASSERT_TRUE(stage.run(40.0, {scenario.start}, [&] { return stage.simulator->clock_runs(); }));
+  stage.run(0.5, {scenario.start}, [] { return false; });
+  stage.simulator->begin_turn();
+  EXPECT_FALSE(stage.simulator->answered());
+  stage.companions[0].setpoint(scenario.start);
+  stage.simulator->poll();
+  EXPECT_TRUE(stage.simulator->answered());
 }
 
 }  // namespace
