@@ -95,8 +95,12 @@ Check inspect_rate(const StreamRate& rate, std::size_t index) {
   return check;
 }
 
-void inspect_traffic(const LinkFindings& heard, std::vector<Check>& checks) {
-  for (std::size_t i = 0; i < heard.rates.size(); ++i) checks.push_back(inspect_rate(heard.rates[i], i));
+void inspect_traffic(const config::Mission& mission, const LinkFindings& heard, std::vector<Check>& checks) {
+  // With the state over DDS only the heartbeat is needed here.
+  const std::size_t needed = mission.state == config::Transport::kDds ? 1 : heard.rates.size();
+  for (std::size_t i = 0; i < std::min(needed, heard.rates.size()); ++i) {
+    checks.push_back(inspect_rate(heard.rates[i], i));
+  }
   Check round_trip{Level::kWarning, "round trip", "no answer to TIMESYNC", "check that messages reach the autopilot"};
   if (heard.info.round_trip_s) {
     const bool slow = *heard.info.round_trip_s > kLongRoundTrip_s;
@@ -188,7 +192,7 @@ std::vector<Check> inspect_link(const config::Mission& mission, const LinkFindin
   if (!heard.autopilot) return {autopilot_missing(mission, heard)};
   std::vector<Check> checks;
   inspect_identity(mission, heard, checks);
-  inspect_traffic(heard, checks);
+  inspect_traffic(mission, heard, checks);
   inspect_vehicle(heard, checks);
   for (Check& check : inspect_parameters(heard.parameters, heard.info.rc_receiver)) checks.push_back(std::move(check));
   return checks;

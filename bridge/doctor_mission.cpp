@@ -23,8 +23,12 @@ std::string point(const Vec3& p) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
 }
 
-Check inspect_position(const LinkFindings& heard) {
+Check inspect_position(const config::Mission& mission, const LinkFindings& heard) {
   const VehicleState& s = heard.state;
+  if (s.position_stamp < 0.0 && mission.state == config::Transport::kDds) {
+    return {Level::kWarning, "local position", "not on MAVLink, so the mission is not checked against it",
+            "stream LOCAL_POSITION_NED (32) on this link too"};
+  }
   if (s.position_stamp < 0.0) {
     return {Level::kFault, "local position", "never heard", "wait for GPS or another position source"};
   }
@@ -130,7 +134,13 @@ void inspect_waypoints(const config::Mission& mission, const VehicleState& s, st
 
 std::vector<Check> inspect_mission(const config::Mission& mission, const LinkFindings& heard) {
   if (!heard.autopilot) return {};
-  std::vector<Check> checks{inspect_position(heard), inspect_origin(mission, heard)};
+  std::vector<Check> checks{inspect_position(mission, heard), inspect_origin(mission, heard)};
+  if (mission.tracks.sources.adsb) {
+    checks.push_back({Level::kOk, "ADS-B",
+                      heard.aircraft_reports > 0 ? fmt::format("{} reports of aircraft", heard.aircraft_reports)
+                                                 : std::string("no aircraft: an empty sky, or no receiver"),
+                      ""});
+  }
   if (heard.state.position_stamp < 0.0) return checks;
   checks.push_back(inspect_fence(mission, heard.state));
   inspect_waypoints(mission, heard.state, checks);

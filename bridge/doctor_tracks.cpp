@@ -37,6 +37,7 @@ Check no_data(const config::Mission& mission, const TrackSourceStatus& status, d
 }  // namespace
 
 std::vector<Check> inspect_tracks(const config::Mission& mission, double seconds, const std::stop_token& stop) {
+  if (!mission.tracks.sources.jink) return {};
   const SteadyClock clock;
   DdsTrackReader reader(mission.dds_domain, clock);
   std::uint64_t messages = 0;

@@ -12,7 +12,7 @@ namespace jink::bridge {
 
 /// Listens for `seconds` (until `stop`) for writers of obstacle tracks on the mission's DDS domain: who is there, how
 /// often messages come, how old they are, what is refused. kMissing where no writer is there and the mission requires
-/// one.
+/// one. Nothing where the mission takes no such tracks.
 [[nodiscard]] std::vector<Check> inspect_tracks(const config::Mission& mission, double seconds,
                                                 const std::stop_token& stop);
 

@@ -91,9 +91,11 @@ std::string verdict(const Checks& checks) {
   const auto faults = count(Check::Level::kFault) + count(Check::Level::kMissing);
   const auto warnings = count(Check::Level::kWarning);
   if (faults == 0 && warnings == 0) return "all is well";
-  return fmt::format("{}: {} in the way of a flight, {} warning{}",
-                     faults == 0 ? "a flight is possible" : "no flight yet", faults, warnings,
-                     warnings == 1 ? "" : "s");
+  const auto counted = [](auto number, const char* what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  if (faults == 0) return "a flight is possible; " + counted(warnings, "warning");
+  return "no flight like this: " + counted(faults, "fault") + ", " + counted(warnings, "warning");
 }
 
 int run(const DoctorOptions& options) {

@@ -150,6 +150,16 @@ TEST(Doctor, NamesTheOneThingThatIsWrongWithTheVehicle) {
   }
 }
 
+TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
+  Mission m = mission();
+  m.state = jink::config::Transport::kDds;
+  LinkFindings h = healthy();
+  for (std::size_t i = 1; i < h.rates.size(); ++i) h.rates[i].count = 0;
+  EXPECT_EQ(bad_ones(inspect_link(m, h)), "");
+  h.state.position_stamp = -1.0;
+  EXPECT_EQ(find(inspect_mission(m, h), "local position").level, Level::kWarning);
+}
+
 TEST(Doctor, KnowsWhatTheParametersDo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::tuple<std::string, double, Level>> cases{
@@ -204,6 +214,7 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
   EXPECT_EQ(of_mission("geofence", [](Mission& m) { m.waypoints = {{60.0, 0.0, 2.0}}; }).level, Level::kFault);
   EXPECT_EQ(of_mission("min_height", [](Mission& m) { m.waypoints[0].z() = 0.0; }).finding,
             "1 waypoint below 1 m will be raised to it");
+  EXPECT_EQ(of_mission("ADS-B", [](Mission&) {}).level, Level::kOk);
   EXPECT_EQ(of_mission("waypoints", [](Mission& m) { m.time_limit = 5.0; }).level, Level::kFault);
   EXPECT_EQ(of_mission("waypoints",
                        [](Mission& m) {

@@ -8,12 +8,13 @@ import json
 import os
 import struct
 import subprocess
+import sys
 
 os.environ["MAVLINK20"] = "1"  # read by the import
 
 from pymavlink import mavutil
 
-from flight import CONFIG, Arena, check, interrupt, main, wait_until
+from flight import CONFIG, SOURCE, Arena, check, interrupt, main, wait_until
 
 STREAMS = ("HEARTBEAT", "LOCAL_POSITION_NED", "ATTITUDE", "ODOMETRY")
 
@@ -98,6 +99,13 @@ def test(jink, instance):
         check(checks["COM_RCL_EXCEPT"]["level"] == "ok", "so is offboard without RC")
         check(checks["COM_OF_LOSS_T"]["level"] == "warning" and "5 s" in checks["COM_OF_LOSS_T"]["finding"],
               "five seconds until it acts are not")
+
+        peer = SOURCE / "tests" / "bridge" / "px4_peer.py"
+        with subprocess.Popen([sys.executable, str(peer), "--port", str(14540 + arena.instance), "--system", "99"],
+                              stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as second:
+            _, checks, _ = doctor(arena, mission, "--seconds", "3")
+            second.stdin.close()
+        check(checks["other autopilots"]["level"] == "warning", "a second autopilot is warned of")
 
         outside = arena.mission("sitl", geofence={"min": [10, -50, 0], "max": [50, 50, 20]})
         status, checks, _ = doctor(arena, outside, "--seconds", "2")
