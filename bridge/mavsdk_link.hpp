@@ -101,7 +101,7 @@ class MavsdkLink final : public VehicleLink {
   [[nodiscard]] VehicleState state() override;
   /// SET_POSITION_TARGET_LOCAL_NED in the local NED frame with position, velocity, acceleration and yaw. False without
   /// an autopilot, for values that are not finite or beyond 1e6, and when MAVSDK refuses the message. A lost UDP packet
-  /// is nothing it can know.
+  /// is nothing it can know, and to a UDP peer that was silent for 10 s nothing goes out though MAVSDK says so.
   [[nodiscard]] bool send(const Setpoint& setpoint) override;
   void request(Command command) override;
   [[nodiscard]] std::optional<CommandReport> next_report() override;

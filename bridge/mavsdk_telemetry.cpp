@@ -24,6 +24,7 @@ constexpr double kRateTolerance = 0.8;  // of the rate asked for: slower than th
 constexpr int kOdometryRequests = 5;    // to an autopilot that has never sent any
 constexpr std::size_t kNotices = 64;
 constexpr std::size_t kAdsbReports = 1024;
+constexpr std::size_t kParameters = 4096;       // more than any autopilot has
 constexpr std::uint32_t kRcReceiver = 0x10000;  // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
 constexpr double kDegreesE7 = 1e7;
 constexpr double kPerMetre_mm = 1e3;
@@ -393,7 +394,7 @@ void MavsdkLink::Impl::on_parameter(const Message& message) {
   {
     const std::scoped_lock lock(mutex_);
     if (!whole) return malformed();
-    if (parameters_.size() >= kAdsbReports && !parameters_.contains(name)) return;
+    if (parameters_.size() >= kParameters && !parameters_.contains(name)) return;
     const bool bytewise = info_.autopilot.value_or(px4::kAutopilotPx4) == px4::kAutopilotPx4;
     parameters_[name] = px4::parameter(name, type, number(message.fields, "param_value"), bytewise);
   }

@@ -71,6 +71,7 @@ Subcommand add_plan(CLI::App& jink);
 Subcommand add_replay(CLI::App& jink);
 Subcommand add_sim(CLI::App& jink);
 Subcommand add_fly(CLI::App& jink);
+Subcommand add_doctor(CLI::App& jink);
 Subcommand add_report(CLI::App& jink);
 
 }  // namespace jink::tools
