@@ -83,7 +83,13 @@ planner::Track track_of(const Json& item) {
   if (!item[0].is_number_unsigned()) refuse("\"tracks\" holds an id that is not a whole number");
   std::array<double, 13> x{};
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = exact(item[i + 1], "tracks");
-  return {item[0].get<std::uint64_t>(), {x[0], x[1], x[2]}, {x[3], x[4], x[5]}, {x[6], x[7], x[8]}, x[9], x[10], x[11],
+  return {item[0].get<std::uint64_t>(),
+          {x[0], x[1], x[2]},
+          {x[3], x[4], x[5]},
+          {x[6], x[7], x[8]},
+          x[9],
+          x[10],
+          x[11],
           x[12]};
 }
 
@@ -204,9 +210,8 @@ FlightComparison compare_plans(FlightRecording& recording, const ReplaySettings&
     const bool by_count = settings.settings.horizon.generations == settings.recorded.horizon.generations &&
                           recorded->searches[0].schedule > 0;
     planner::Plan plan =
-        by_count
-            ? planner.repeat(job.request, job.previous, settings.seed, job.number, recorded->searches, pool)
-            : planner.plan(job.request, job.previous, settings.seed, job.number, whole, pool);
+        by_count ? planner.repeat(job.request, job.previous, settings.seed, job.number, recorded->searches, pool)
+                 : planner.plan(job.request, job.previous, settings.seed, job.number, whole, pool);
     for (planner::TimedPoint& point : plan.path) point.t += job.start;
     if (plan.status != recorded->status || !same_bits(plan.path, recorded->path)) {
       result.differences.push_back({recorded->line, recorded->t, job.number, recorded->status, plan.status,

@@ -35,8 +35,8 @@ std::string read(const std::filesystem::path& file) {
 }
 
 TEST(JsonLine, NumbersReadBackToTheSameBits) {
-  for (const double x : {0.0, -0.0, 1.0, -3.0, 0.1, 1.0 / 3.0, 1e22, -1e300, 123456789012345680.0, 18446744073709551615.0,
-                         5e-324, std::numeric_limits<double>::max(), 2.2250738585072014e-308}) {
+  for (const double x : {0.0, -0.0, 1.0, -3.0, 0.1, 1.0 / 3.0, 1e22, -1e300, 123456789012345680.0,
+                         18446744073709551615.0, 5e-324, std::numeric_limits<double>::max(), 2.2250738585072014e-308}) {
     JsonLine line;
     line.open('[').number(x).close(']');
     const double again = Json::parse(line.str())[0].get<double>();

@@ -115,8 +115,7 @@ class RealTimePlans {
     result.job = std::move(job);
     result.job.request.tracks = result.job.tracks;
     const planner::Budget budget{settings_.horizon.generations, std::chrono::steady_clock::now() + time};
-    result.plan =
-        planner_.plan(result.job.request, result.job.previous, 9, result.job.number, budget, pool_);
+    result.plan = planner_.plan(result.job.request, result.job.previous, 9, result.job.number, budget, pool_);
     log_.on_plan(result.job.start, result);
     return result.plan;
   }
