@@ -14,8 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (parameters) {
       (void)jink::config::load_settings(file.path());
     } else {
-      const jink::config::Mission mission =
-          jink::config::load_mission(file.path(), JINK_SOURCE_DIR "/config/vehicles");
+      const jink::config::Mission mission = jink::config::load_mission(file.path(), JINK_SOURCE_DIR "/config/vehicles");
       jink::fuzz::require(!mission.waypoints.empty(), "a mission without a waypoint");
       jink::fuzz::require(!mission.connection.empty(), "a mission without a connection");
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DDS payloads as the track reader decodes them, into the track table: what comes out of that is finite and bounded,
-// whatever goes in. The input is a sequence of messages: writer, time since the last one (10 ms), age of its stamp
-// (100 ms), length (two bytes), payload.
+// DDS payloads as the track readers decode them, into the track table: what comes out of that is finite and bounded,
+// whatever goes in. The input is a sequence of messages: writer (0 to 3; 4 to 7: of Autoware's TrackedObjects), time
+// since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
 #include <cmath>
 
+#include "bridge/dds_autoware.hpp"
 #include "bridge/dds_tracks.hpp"
 #include "bridge/track_table.hpp"
 #include "tests/fuzz/fuzz.hpp"
@@ -21,6 +22,15 @@ void check(const std::vector<jink::planner::Track>& tracks) {
   }
 }
 
+std::optional<jink::bridge::TrackMessage> decode(std::span<const std::uint8_t> payload, bool autoware) {
+  if (autoware) {
+    auto message = jink::bridge::decode_tracked_objects(payload);
+    return message ? std::optional(std::move(message->tracks)) : std::nullopt;
+  }
+  auto message = jink::bridge::decode_obstacle_tracks(payload);
+  return message ? std::optional(std::move(message->tracks)) : std::nullopt;
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -28,19 +38,19 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   jink::bridge::TrackTable table(1.0);
   double now = 10.0;
   while (!input.empty()) {
-    const std::uint64_t writer = input.byte() % 4U;
+    const std::uint64_t writer = input.byte() % 8U;
     now += 0.01 * input.byte();
     const double stamp_age = 0.1 * static_cast<std::int8_t>(input.byte());
     const std::size_t low = input.byte();
     const auto payload = input.bytes(low + 256U * input.byte());
-    auto message = jink::bridge::decode_obstacle_tracks(payload);
+    auto message = decode(payload, writer >= 4);
     if (!message) continue;
-    jink::fuzz::require(message->tracks.tracks.size() <= jink::bridge::TrackLimits::kTracksPerMessage,
+    jink::fuzz::require(message->tracks.size() <= jink::bridge::TrackLimits::kTracksPerMessage,
                         "more tracks than a message may have");
-    message->tracks.writer = writer;
-    message->tracks.received = now;
-    message->tracks.stamp_age = stamp_age;
-    table.ingest(message->tracks);
+    message->writer = writer;
+    message->received = now;
+    message->stamp_age = stamp_age;
+    table.ingest(*message);
     check(table.predict(now, 0.7));
   }
   check(table.predict(now + 0.5, 0.7));
