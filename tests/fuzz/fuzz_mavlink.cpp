@@ -49,7 +49,7 @@ class Simulated {
     const mavlink_msg_entry_t* entry = mavlink_get_msg_entry(id);
     require(entry != nullptr, "a message that the dialect does not know");
     mavlink_message_t message{};
-    message.msgid = id;
+    message.msgid = id & 0xFFFFFFU;  // 24 bits
     std::copy_n(payload.begin(), std::min<std::size_t>(payload.size(), MAVLINK_MAX_PAYLOAD_LEN),
                 reinterpret_cast<std::uint8_t*>(message.payload64));  // NOLINT: the C library's own way
     mavlink_finalize_message_buffer(&message, 255, 190, &status_, entry->min_msg_len, entry->max_msg_len,
