@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what jink builds with on Debian 12: packages by apt, Python packages into .venv. Quick when nothing is missing.
 # Called by tools/demo.sh, tools/test.sh and .ci/run; safe to run by hand. Not root: uses sudo and says so.
-#   tools/setup.sh [bench]        bench: what tools/bench.sh needs too
+#   tools/setup.sh [bench|fuzz]        what tools/bench.sh or tools/fuzz.sh needs too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,6 +16,7 @@ packages=(
 case "${1:-}" in
   "") ;;
   bench) packages+=(libbenchmark-dev libpagmo-dev) ;;
+  fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
   *) echo "setup: unknown group of packages: $1" >&2; exit 2 ;;
 esac
 missing=()

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the whole test suite. Safe to run again; quick when nothing changed.
-#   tools/test.sh [PRESET]        release unless told: dev, asan, tsan
+#   tools/test.sh [PRESET [CTEST OPTION...]]        release unless told: dev, asan, tsan
 set -euo pipefail
 cd "$(dirname "$0")/.."
-preset=${1:-release}
+preset=${1:-release}; shift || true
 tools/build.sh "$preset"
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
-ctest --preset "$preset" -j "$(nproc)"
+ctest --preset "$preset" -j "$(nproc)" "$@"

@@ -43,6 +43,8 @@ BAD_USAGE = [
     (["sim", CROSSING, "--speed", "100"], ["--speed", "100", "20"]),
     (["sim", CONFIG / "missions" / "sitl.yaml"], ["sitl.yaml:", "format", "jink-mission/1", "jink-scenario/1"]),
     (["fly", CROSSING], ["crossing.yaml:", "format", "jink-scenario/1", "jink-mission/1"]),
+    (["replay", "no-such-log.jsonl"], ["no-such-log.jsonl"]),
+    (["replay", "flight.jsonl", "--log", "again.jsonl"], ["--log", "jink report"]),
     (["report", "no-such-log.jsonl"], ["no-such-log.jsonl"]),
 ]
 
@@ -152,6 +154,32 @@ def same_bits(jink, folder):
     check(len(flights) == 1, "replay: summary and log the same bytes with 1, 2 and 8 threads")
 
 
+def recorded_flight(jink, folder):
+    """A flight log is planned again: no difference from its own parameters, some from others, one line where it is bad."""
+    log = folder / "recorded.jsonl"
+    flight = jink.summary("replay", CROSSING, "--seed", 3, "--log", log)
+    again = jink.summary("replay", log, "--threads", 1)
+    check(again["format"] == "jink-flight-replay/1" and again["flight"] == flight["scenario"], "jink-flight-replay/1")
+    check(again["plans"] == flight["plans"] and again["differ"] == 0 == len(again["differences"]), f"{again['plans']} plans, {again['differ']} differ")
+    other = jink.summary("replay", log, "--set", "horizon.margin=1.5", status=1)
+    check(other["differ"] == len(other["differences"]) > 0, f"with a margin of 1.5 m {other['differ']} differ")
+    check(jink.summary("replay", log, "--seed", 4, status=1)["differ"] > 0, "with another seed some differ")
+    lines = log.read_text().splitlines(keepends=True)
+    cut = folder / "cut.jsonl"
+    cut.write_text("".join(lines)[:-9])
+    check(jink.summary("replay", cut)["ignored_records"] == 1, "a last line that is cut off")
+    bad = {"garbage": (lines[:5] + ["garbage\n"] + lines[5:], ":6: is not JSON"),
+           "header": (lines[1:], ":1: the first line is not a jink-log/1 header"),
+           "old": (lines[:1] + ['{"type":"plan","t":1,"path":[],"ms":1,"status":"reaches"}\n'], "no record of what they were made from"),
+           "none": (lines[:1], "holds no plans")}
+    for name, (content, said) in bad.items():
+        file = folder / f"{name}.jsonl"
+        file.write_text("".join(content))
+        done = jink.run("replay", file)
+        one_line = done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1 and said in done.stderr
+        check(one_line and str(file) in done.stderr, f"{name}: status {done.returncode}: {done.stderr.strip()}")
+
+
 def outcomes(jink, folder):
     base = {"format": "jink-scenario/1", "name": "case", "start": [0, 0, 2], "target": [10, 0, 2], "vehicle": "ardrone2"}
     cases = {
@@ -178,7 +206,7 @@ def test(program):
         for case in (bad_usage, help_reads, plans, paper_slr):
             print(f"== {case.__name__}", flush=True)
             case(jink)
-        for case in (bad_values, same_bits, outcomes):
+        for case in (bad_values, same_bits, recorded_flight, outcomes):
             print(f"== {case.__name__}", flush=True)
             case(jink, folder)
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// DDS payloads as the track readers decode them, into the track table: what comes out of that is finite and bounded,
+// whatever goes in. The input is a sequence of messages: writer (0 to 3; 4 to 7: of Autoware's TrackedObjects), time
+// since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
+#include <cmath>
+
+#include "bridge/dds_autoware.hpp"
+#include "bridge/dds_tracks.hpp"
+#include "bridge/track_table.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace {
+
+void check(const std::vector<jink::planner::Track>& tracks) {
+  for (const jink::planner::Track& track : tracks) {
+    const bool finite = track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
+                        std::isfinite(track.position_sigma) && std::isfinite(track.velocity_sigma) &&
+                        std::isfinite(track.age);
+    jink::fuzz::require(finite, "a track that is not finite");
+    jink::fuzz::require(track.radius > 0.0 && track.radius <= jink::bridge::TrackLimits::kRadius, "an absurd radius");
+    jink::fuzz::require(track.age >= 0.0, "a track from the future");
+  }
+}
+
+std::optional<jink::bridge::TrackMessage> decode(std::span<const std::uint8_t> payload, bool autoware) {
+  if (autoware) {
+    auto message = jink::bridge::decode_tracked_objects(payload);
+    return message ? std::optional(std::move(message->tracks)) : std::nullopt;
+  }
+  auto message = jink::bridge::decode_obstacle_tracks(payload);
+  return message ? std::optional(std::move(message->tracks)) : std::nullopt;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  jink::fuzz::Input input(data, size);
+  jink::bridge::TrackTable table(1.0);
+  double now = 10.0;
+  while (!input.empty()) {
+    const std::uint64_t writer = input.byte() % 8U;
+    now += 0.01 * input.byte();
+    const double stamp_age = 0.1 * static_cast<std::int8_t>(input.byte());
+    const std::size_t low = input.byte();
+    const auto payload = input.bytes(low + 256U * input.byte());
+    auto message = decode(payload, writer >= 4);
+    if (!message) continue;
+    jink::fuzz::require(message->tracks.size() <= jink::bridge::TrackLimits::kTracksPerMessage,
+                        "more tracks than a message may have");
+    message->writer = writer;
+    message->received = now;
+    message->stamp_age = stamp_age;
+    table.ingest(*message);
+    check(table.predict(now, 0.7));
+  }
+  check(table.predict(now + 0.5, 0.7));
+  return 0;
+}
