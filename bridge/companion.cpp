@@ -2,7 +2,9 @@
 #include "bridge/companion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <utility>
 
@@ -16,12 +18,27 @@ constexpr double kTakeoffTolerance = 0.3;  // m
 constexpr double kLostReference = 1.2;     // m from the reference, beyond which plans start at the vehicle instead
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
+constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
+constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
 
 SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   SupervisorSettings result;
   result.stale_state = s.stale_state;
   result.stale_plan = s.stale_plan;
   return result;
+}
+
+// Where a path may lead.
+planner::Box flight_volume(const config::Mission& mission) {
+  planner::Box box = mission.geofence;
+  box.min.z() = std::max(box.min.z(), mission.min_height);
+  return box;
+}
+
+std::string metres(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f m", value);
+  return text.data();
 }
 
 double wrapped(double angle) {
@@ -47,7 +64,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
       stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag,
-               settings.horizon.braking}) {
+               settings.horizon.braking, mission.vehicle.max_acceleration, flight_volume(mission)}) {
   if (mission.intents && parts_.intents != nullptr) {
     team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
   }
@@ -62,18 +79,17 @@ bool Companion::step(double now) {
     for (Vec3& waypoint : mission_.waypoints) {
       if (waypoint.z() >= mission_.min_height) continue;
       event(now, "raised",
-            "a waypoint at " + std::to_string(waypoint.z()) + " m is raised to min_height " +
-                std::to_string(mission_.min_height) + " m");
+            "a waypoint at " + metres(waypoint.z()) + " is raised to min_height " + metres(mission_.min_height));
       waypoint.z() = mission_.min_height;
     }
   }
-  state_ = parts_.link.state();
-  for (FlightObserver* observer : parts_.observers) observer->on_state(now, state_);
+  take_state(now);
   take_tracks(now);
   if (team_) team_->listen(now, state_);
   take_plan(now);
   measure(now);
   const Decision decision = supervisor_.update(now, state_, picture(now));
+  record_hazard(now);
   move(now, decision);
   if (team_) team_->tell(now, state_, decision.motion == Decision::Motion::kNone ? nullptr : &stream_, summary_.plans);
   if (decision.request) {
@@ -85,6 +101,23 @@ bool Companion::step(double now) {
   return !supervisor_.done();
 }
 
+// An estimate that jumps takes along what is to be followed: the vehicle did not move.
+void Companion::take_state(double now) {
+  state_ = parts_.link.state();
+  for (FlightObserver* observer : parts_.observers) observer->on_state(now, state_);
+  if (state_.estimate_resets == estimate_resets_) return;
+  estimate_resets_ = state_.estimate_resets;
+  const Vec3 shift = state_.estimate_shift - estimate_shift_;
+  estimate_shift_ = state_.estimate_shift;
+  if (supervisor_.flight_began() < 0.0) return;
+  ++summary_.estimate_resets;
+  stream_.shift(shift);
+  takeoff_point_ += shift;
+  if (last_position_) *last_position_ += shift;
+  event(now, "estimate_reset",
+        "the autopilot's position estimate jumped by " + metres(shift.norm()) + ": the plan is shifted along");
+}
+
 void Companion::take_tracks(double now) {
   TrackMessage message;
   bool any = false;
@@ -93,6 +126,10 @@ void Companion::take_tracks(double now) {
     any = true;
   }
   if (!any) return;
+  new_tracks_ = true;
+  if (now - state_.position_stamp <= settings_.companion.stale_state)
+    table_.find_self(now, state_.position + (now - state_.position_stamp) * state_.velocity, state_.velocity,
+                     mission_.vehicle.radius);
   const auto tracks = table_.predict(now, settings_.horizon.acceleration_trust);
   for (FlightObserver* observer : parts_.observers) observer->on_tracks(now, tracks);
 }
@@ -120,8 +157,13 @@ void Companion::take_plan(double now) {
   if (usable) newest_plan_ = result->job.begun;
   if (!usable || !wanted) return;
   planner::TimedPath path = std::move(result->plan.path);
-  for (planner::TimedPoint& point : path) point.t += result->job.start;
+  const Vec3 shift = estimate_shift_ - result->job.estimate_shift;  // of the time that the plan took
+  for (planner::TimedPoint& point : path) {
+    point.t += result->job.start;
+    point.position += shift;
+  }
   stream_.follow(std::move(path));
+  new_plan_ = true;
   if (result->job.newest_track >= 0.0) {
     unsent_track_ = result->job.newest_track;
     unsent_from_ = result->job.start;
@@ -137,25 +179,32 @@ void Companion::planner_failed(double now, const std::exception& failure) {
 }
 
 planner::Box Companion::volume(const Vec3& start) const {
-  planner::Box box = mission_.geofence;
-  box.min.z() = std::max(box.min.z(), mission_.min_height);
+  planner::Box box = flight_volume(mission_);
   // Where the vehicle is already, a path may begin.
   box.min = box.min.cwiseMin(start);
   box.max = box.max.cwiseMax(start);
   return box;
 }
 
+// The margin of the settings, or what tracking has been off by of late where that is more.
+double Companion::margin() const {
+  const double least = settings_.horizon.margin;
+  return std::clamp(tracking_error_, least, std::max(least, settings_.companion.margin_limit));
+}
+
 void Companion::start_plan(double now) {
   const config::CompanionSettings& companion = settings_.companion;
-  if (planner_failed_ || parts_.planner.busy() ||
-      (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < 1.0 / companion.replan_rate_hz))
-    return;
+  if (planner_failed_ || parts_.planner.busy()) return;
+  const double period = 1.0 / (new_tracks_ ? companion.largest_replan_rate_hz : companion.replan_rate_hz);
+  if (last_plan_begun_ >= 0.0 && now - last_plan_begun_ + 1e-6 < period) return;
   last_plan_begun_ = now;
+  new_tracks_ = false;
   PlanJob job;
   job.number = summary_.plans;
   job.begun = now;
   job.start = now + std::max(parts_.planner.latency(), companion.commitment);
   job.newest_track = table_.newest_message();
+  job.estimate_shift = estimate_shift_;
   job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
   if (team_) job.paths = team_->paths(now, job.start);
 
@@ -167,13 +216,13 @@ void Companion::start_plan(double now) {
       lost ? Vec3(state_.position + (job.start - state_.position_stamp) * state_.velocity) : reference.position;
   request.velocity = lost ? state_.velocity : reference.velocity;
   if (lost && !announced_lost_)
-    event(now, "reference_lost",
-          "tracking error " + std::to_string(error) + " m: planning from the vehicle's position");
+    event(now, "reference_lost", "tracking error " + metres(error) + ": planning from the vehicle's position");
   announced_lost_ = lost;
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
   request.volume = volume(request.position);
-  request.margin = settings_.horizon.margin;
+  request.margin = margin();
+  summary_.largest_margin = std::max(summary_.largest_margin, request.margin);
   request.track_acceleration = settings_.horizon.track_acceleration;
   request.acceleration_trust = settings_.horizon.acceleration_trust;
   if (!lost) {
@@ -198,6 +247,7 @@ void Companion::move(double now, const Decision& decision) {
       if (!stream_.active() || supervisor_.phase() == Phase::kEngaging) {
         takeoff_point_ = state_.position;
         takeoff_point_.z() = std::max(state_.position.z() + mission_.takeoff_height, mission_.min_height);
+        takeoff_point_.z() = std::min(takeoff_point_.z(), std::max(mission_.geofence.max.z(), state_.position.z()));
         stream_.hold(takeoff_point_, now);
       } else if (stream_.braking()) {  // a hazard of the climb has passed
         stream_.hold(takeoff_point_, now);
@@ -217,6 +267,10 @@ void Companion::move(double now, const Decision& decision) {
       break;
   }
   if (!stream_.active()) stream_.hold(state_.position, now);
+  const bool due = now - last_sent_ + 1e-6 >= kSlack / settings_.companion.setpoint_rate_hz;
+  if (!due && !new_plan_) return;
+  last_sent_ = now;
+  new_plan_ = false;
   const Setpoint setpoint = stream_.setpoint(now, heading(now));
   if (!parts_.link.send(setpoint)) {
     if (!announced_send_failure_) event(now, "send_failed", "setpoints cannot be sent");
@@ -228,7 +282,8 @@ void Companion::move(double now, const Decision& decision) {
   for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
   const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.acceleration_lead);
   if (unsent_track_ && now + lead >= unsent_from_) {
-    summary_.track_to_setpoint_ms.push_back(1e3 * (now - *unsent_track_));
+    const double sent = parts_.clock != nullptr ? parts_.clock->now() : now;
+    summary_.track_to_setpoint_ms.push_back(1e3 * (sent - *unsent_track_));
     unsent_track_.reset();
   }
 }
@@ -307,7 +362,16 @@ void Companion::measure(double now) {
     stream_.learn(state_.position_stamp, state_.position, std::max(0.0, now - last_step_));
     const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
     summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
+    tracking_error_ = std::max(error, tracking_error_ * std::exp(-std::max(0.0, now - last_step_) / kForgetting));
   }
+}
+
+void Companion::record_hazard(double now) {
+  const std::string& hazard = supervisor_.hazard();
+  if (hazard.empty()) return;
+  const bool goes_on = hazard == announced_hazard_ && !summary_.hazards.empty();
+  if (!goes_on) summary_.hazards.push_back({hazard, now, 0.0});
+  summary_.hazards.back().duration = now - summary_.hazards.back().t;
 }
 
 // Events for what changed: nothing happens silently, and nothing is said fifty times a second.
@@ -330,23 +394,56 @@ void Companion::announce(double now) {
     announced_hazard_ = supervisor_.hazard();
     event(now, announced_hazard_.empty() ? "hazard_over" : "hazard", announced_hazard_);
   }
-  if (table_.clock_offsets() > 0 && !announced_offset_) {
-    announced_offset_ = true;
+  announce_vehicle(now);
+  announce_tracks(now);
+}
+
+void Companion::announce_vehicle(double now) {
+  if (state_.battery != announced_battery_) {
+    announced_battery_ = state_.battery;
+    event(now, "battery", std::string(to_string(announced_battery_)));
+  }
+  const bool grown = margin() > settings_.horizon.margin;
+  if (grown != announced_margin_ && supervisor_.phase() == Phase::kFlying) {
+    announced_margin_ = grown;
+    event(now, "margin",
+          grown ? "tracking is off by " + metres(tracking_error_) + ": plans keep so much more from obstacles"
+                : "back to " + metres(settings_.horizon.margin));
+  }
+}
+
+// What was refused or put right, at most once a second.
+void Companion::announce_tracks(double now) {
+  const TrackSourceStatus tracks = parts_.tracks.status();
+  const TrackTableCounts& table = table_.counts();
+  summary_.dropped_tracks = tracks.dropped_tracks + table.invalid_tracks + table.surplus_tracks;
+  if (std::floor(now) == std::floor(last_step_)) return;
+  if (tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks)
+    event(now, "tracks_refused", tracks.last_refusal);
+  announced_tracks_ = tracks;
+  if (table.clock_offsets > 0 && announced_table_.clock_offsets == 0)
     event(now, "tracks_clock",
           "a track writer's stamps are not this computer's time: only changes of its delay are known");
-  }
-  if (table_.late_messages() != announced_late_ && std::floor(now) != std::floor(last_step_)) {  // once a second
-    announced_late_ = table_.late_messages();
-    event(now, "tracks_late", std::to_string(announced_late_) + " track messages came too late to be used");
-  }
-  const TrackSourceStatus tracks = parts_.tracks.status();
-  summary_.dropped_tracks = tracks.dropped_tracks;
-  const bool refused =
-      tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks;
-  if (refused && std::floor(now) != std::floor(last_step_)) {  // once a second
-    announced_tracks_ = tracks;
-    event(now, "tracks_refused", tracks.last_refusal);
-  }
+  if (table.late_messages != announced_table_.late_messages)
+    event(now, "tracks_late", std::to_string(table.late_messages) + " track messages came too late to be used");
+  if (table.frozen_messages != announced_table_.frozen_messages)
+    event(now, "tracks_frozen",
+          std::to_string(table.frozen_messages) +
+              " track messages left out: what should move had not moved since the one before");
+  if (table.invalid_tracks != announced_table_.invalid_tracks)
+    event(now, "tracks_refused", std::to_string(table.invalid_tracks) + " tracks that are none were left out");
+  if (table.surplus_tracks != announced_table_.surplus_tracks)
+    event(now, "tracks_refused",
+          std::to_string(table.surplus_tracks) + " tracks beyond " + std::to_string(TrackTable::kMost) +
+              " were left out");
+  announced_table_ = table;
+  if (table_.own_tracks() != announced_own_)
+    event(now, "tracks_self", std::to_string(table_.own_tracks()) + " tracks are taken for this vehicle itself");
+  announced_own_ = table_.own_tracks();
+  const int silent = table_.silent_writers(now, mission_.tracks.timeout_s);
+  if (silent != announced_silent_)
+    event(now, "tracks_silent", std::to_string(silent) + " track writers have fallen silent");
+  announced_silent_ = silent;
 }
 
 FlightSummary Companion::summary() const {

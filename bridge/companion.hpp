@@ -39,6 +39,13 @@ struct Percentiles {
 };
 std::optional<Percentiles> percentiles(std::vector<double> values);
 
+/// A time in which the vehicle braked though nobody ended the flight.
+struct HazardRecord {
+  std::string what;
+  double t = 0.0;         ///< companion's clock
+  double duration = 0.0;  ///< s; until the end of the flight where it did not pass
+};
+
 /// What a flight amounts to, as the companion saw it.
 struct FlightSummary {
   Outcome outcome = Outcome::kNone;
@@ -49,6 +56,9 @@ struct FlightSummary {
   double straight_length = 0.0;
   double max_speed = 0.0;
   double largest_tracking_error = 0.0;  ///< distance from the reference
+  double largest_margin = 0.0;          ///< that the planner was asked for
+  std::uint64_t estimate_resets = 0;    ///< jumps of the autopilot's position estimate, by which the plan was shifted
+  std::vector<HazardRecord> hazards;
   std::uint64_t plans = 0;
   std::uint64_t blocked_plans = 0;
   std::uint64_t deadline_misses = 0;
@@ -62,6 +72,7 @@ struct CompanionParts {
   TrackSource& tracks;
   PlannerTask& planner;
   std::vector<FlightObserver*> observers;
+  const Clock* clock = nullptr;  ///< the one that step() is told; to measure what a step takes. Null: virtual time
   IntentTransport* intents = nullptr;  ///< to and from the team's other vehicles; null: there are none
 };
 
@@ -70,8 +81,9 @@ class Companion {
  public:
   Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts);
 
-  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz. Never blocks. False once it is over.
-  /// What the planner throws ends the flight in HOLD, as Ctrl-C does, with its words as the reason.
+  /// One turn of the loop, to be called at settings.companion.setpoint_rate_hz, and sooner where a track message or a
+  /// plan has come: a plan goes on the wire at once, other setpoints keep the rate. Never blocks. False once it is
+  /// over. What the planner throws ends the flight in HOLD, as Ctrl-C does, with its words as the reason.
   bool step(double now);
   /// Ends the flight as Ctrl-C does: brake, then HOLD.
   void interrupt(double now) { supervisor_.stop(now, Outcome::kAborted, "interrupted"); }
@@ -88,12 +100,17 @@ class Companion {
   void move(double now, const Decision& decision);
   void brake(double now);
   void planner_failed(double now, const std::exception& failure);
+  void take_state(double now);
   void measure(double now);
+  void record_hazard(double now);
   void announce(double now);
   void next_waypoint(double now);
   [[nodiscard]] FlightPicture picture(double now);
   [[nodiscard]] double heading(double now);
   [[nodiscard]] planner::Box volume(const Vec3& start) const;
+  [[nodiscard]] double margin() const;
+  void announce_tracks(double now);
+  void announce_vehicle(double now);
   void event(double now, std::string_view name, const std::string& detail);
 
   config::Mission mission_;
@@ -107,6 +124,9 @@ class Companion {
   Vec3 takeoff_point_ = Vec3::Zero();
   std::size_t waypoint_ = 0;  // the one flown to
   double last_plan_begun_ = -1.0;
+  bool new_tracks_ = false;  // since then
+  double last_sent_ = -1.0;
+  bool new_plan_ = false;  // since then
   double newest_plan_ = -1.0;
   std::optional<double>
       unsent_track_;  // reception of the newest track in a plan whose first setpoint is still to be sent
@@ -114,10 +134,15 @@ class Companion {
   double yaw_ = 0.0;
   bool yaw_known_ = false;
   double last_step_ = -1.0;
+  std::uint32_t estimate_resets_ = 0;  // that have been dealt with
+  Vec3 estimate_shift_ = Vec3::Zero();
+  double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
   bool planner_failed_ = false;
   bool announced_lost_ = false, announced_send_failure_ = false;
-  std::uint64_t announced_late_ = 0;
-  bool announced_offset_ = false;
+  TrackTableCounts announced_table_;
+  int announced_own_ = 0, announced_silent_ = 0;
+  bool announced_margin_ = false;
+  BatteryState announced_battery_ = BatteryState::kUnknown;
   Phase announced_phase_ = Phase::kDone;
   std::string announced_waiting_, announced_hazard_;
   TrackSourceStatus announced_tracks_;

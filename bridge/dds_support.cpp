@@ -105,7 +105,8 @@ dds::Topic* DdsNode::Impl::topic(const std::string& name, const std::string& typ
   if (const auto known = topics_.find(name); known != topics_.end()) {
     return known->second->get_type_name() == type_name ? known->second : nullptr;
   }
-  if (participant_->find_type(type_name).empty()) dds::TypeSupport(new PayloadType(type_name)).register_type(participant_);
+  if (participant_->find_type(type_name).empty())
+    dds::TypeSupport(new PayloadType(type_name)).register_type(participant_);
   dds::Topic* topic = participant_->create_topic(name, type_name, dds::TOPIC_QOS_DEFAULT);
   if (topic != nullptr) topics_.emplace(name, topic);
   return topic;
@@ -149,7 +150,8 @@ void PayloadReader::on_data_available(dds::DataReader* reader) {
   }
 }
 
-void PayloadReader::on_subscription_matched(dds::DataReader* /*reader*/, const dds::SubscriptionMatchedStatus& matched) {
+void PayloadReader::on_subscription_matched(dds::DataReader* /*reader*/,
+                                            const dds::SubscriptionMatchedStatus& matched) {
   writers_ = matched.current_count;
 }
 
@@ -162,10 +164,8 @@ PayloadWriter::PayloadWriter(DdsNode& node, const std::string& topic, const std:
                              const WriterQos& wanted)
     : node_(node.impl()) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  qos.reliability().kind =
-      wanted.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.durability().kind =
-      wanted.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.reliability().kind = wanted.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind = wanted.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = wanted.depth;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;

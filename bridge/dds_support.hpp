@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the bridge's DDS topics have in common, over Fast DDS: payloads in, payloads out. Samples travel as the bytes of
 // the wire and each topic decodes its own, because generated code resizes a sequence to whatever length a payload
-// states and lets the exceptions of that go through Fast DDS. Not a public header: only .cpp files and tests include it.
+// states and lets the exceptions of that go through Fast DDS. Not a public header: only .cpp files and tests include
+// it.
 #pragma once
 
 #include <fastcdr/Cdr.h>

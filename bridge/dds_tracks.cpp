@@ -62,6 +62,7 @@ class DdsTrackReader::Impl {
         }) {}
 
   bool poll(TrackMessage& message) { return inbox_.poll(message); }
+  void notify(Wake& wake) { inbox_.notify(wake); }
 
   TrackSourceStatus status() const {
     TrackSourceStatus status = inbox_.status();
@@ -112,6 +113,9 @@ DdsTrackReader::DdsTrackReader(int domain, const Clock& clock)
 DdsTrackReader::~DdsTrackReader() = default;
 bool DdsTrackReader::poll(TrackMessage& message) {
   return impl_->poll(message);
+}
+void DdsTrackReader::notify(Wake& wake) {
+  impl_->notify(wake);
 }
 TrackSourceStatus DdsTrackReader::status() const {
   return impl_->status();

@@ -37,6 +37,7 @@ class DdsTrackReader final : public TrackSource {
 
   bool poll(TrackMessage& message) override;
   [[nodiscard]] TrackSourceStatus status() const override;
+  void notify(Wake& wake) override;
 
   /// Messages thrown away unread because nobody polled.
   [[nodiscard]] std::uint64_t overruns() const;

@@ -5,15 +5,20 @@
  * plugins/mavlink_direct/mavlink_direct.py), which tools/requirements.txt pins. Enums travel as int.
  *
  * Ownership, learnt from the same files and by trial:
- * - each handle from a _create or first_autopilot has one _destroy of its own;
+ * - each handle from a _create, first_autopilot or get_systems has one _destroy of its own;
  * - order: unsubscribe, destroy plugins, destroy systems, mavsdk_destroy; any other order aborts the process;
  * - unsubscribing waits for a running callback, so it must not be done under a lock that the callback takes;
  * - a message given to a callback is the callback's to free, with mavsdk_mavlink_direct_mavlink_message_destroy;
- * - callbacks come from MAVSDK's own thread and must not throw.
+ * - callbacks come from MAVSDK's own thread and must not throw;
+ * - mavlink_direct hears every component of its system, and no other system; also while MAVSDK holds the system for
+ *   timed out (3 s without a heartbeat), when sending goes on too. A UDP peer that was silent for 10 s is sent nothing
+ *   until it speaks again;
+ * - a float that is not finite comes as null in the JSON fields, and goes so.
  */
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -58,6 +63,9 @@ void mavsdk_destroy(mavsdk_t mavsdk);
 int mavsdk_add_any_connection(mavsdk_t mavsdk, const char* connection_url);
 /* Blocks for timeout_s at most; null when no autopilot was heard. */
 mavsdk_system_t mavsdk_first_autopilot(mavsdk_t mavsdk, double timeout_s);
+/* A handle for each system heard so far, each the caller's to destroy, in an array of its own, freed below. */
+mavsdk_system_t* mavsdk_get_systems(mavsdk_t mavsdk, size_t* count);
+void mavsdk_free_systems_array(mavsdk_system_t* systems);
 
 uint32_t mavsdk_system_get_system_id(mavsdk_system_t system);
 void mavsdk_system_destroy(mavsdk_system_t system);

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The connection, what goes out, and requests with their answers.
 #include "bridge/mavsdk_link.hpp"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
-#include <limits>
-#include <mutex>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
-#include "bridge/command_tracker.hpp"
 #include "bridge/frames.hpp"
-#include "bridge/mavsdk_handles.hpp"
-#include "bridge/px4.hpp"
+#include "bridge/mavsdk_link_impl.hpp"
 
 namespace jink::bridge {
 
@@ -24,99 +17,66 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint32_t kAutopilotComponent = 1;  // MAV_COMP_ID_AUTOPILOT1
-constexpr std::uint32_t kMessageAttitude = 30;    // message ids of common.xml
-constexpr std::uint32_t kMessageLocalPosition = 32;
-constexpr int kFrameLocalNed = 1;       // MAV_FRAME_LOCAL_NED
-constexpr int kIgnoreYawRate = 0x800;   // the only bit set in the setpoint's type_mask: all else is meant
-constexpr double kRateTolerance = 0.8;  // of kTelemetryHz: slower than this is asked for again
+constexpr int kFrameLocalNed = 1;                 // MAV_FRAME_LOCAL_NED
+constexpr int kIgnoreYawRate = 0x800;             // the only bit set in the setpoint's type_mask: all else is meant
 constexpr double kWaitSlice_s = 0.1;
 constexpr double kMaxMagnitude = 1e6;  // of a setpoint's components: far outside any flight, inside float
-
-// NaN where the field is missing or not a number (a NaN on the wire comes as null).
-double number(const json& fields, const char* key) {
-  const auto field = fields.find(key);
-  return field != fields.end() && field->is_number() ? field->get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
-Vec3 vector(const json& fields, const char* x, const char* y, const char* z) {
-  return {number(fields, x), number(fields, y), number(fields, z)};
-}
+constexpr auto kLookForSystems = std::chrono::milliseconds(500);
+constexpr int kParameterTries = 3;
+constexpr std::size_t kLongestParameterName = 16;
 
 bool sane(const Vec3& v) {
   return v.allFinite() && v.cwiseAbs().maxCoeff() <= kMaxMagnitude;
 }
 
-// An unsigned field of at most 32 bits; false when it is missing or out of range.
-bool read(const json& fields, const char* key, std::uint32_t& value) {
-  const double v = number(fields, key);
-  if (!(v >= 0.0 && v <= 4294967295.0)) return false;
-  value = static_cast<std::uint32_t>(v);
-  return true;
+bool is_parameter_name(const std::string& name) {
+  const auto usual = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && name.size() <= kLongestParameterName && std::all_of(name.begin(), name.end(), usual);
 }
 
 }  // namespace
 
-class MavsdkLink::Impl {
- public:
-  Impl(const std::string& url, const Clock& clock);
-  ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+MavsdkLink::Impl::Listener::Listener(Impl& link, SystemHandle system)
+    : link_(link),
+      system_id_(mavsdk_system_get_system_id(system.get())),
+      system_(std::move(system)),
+      direct_(mavsdk_mavlink_direct_create(system_.get())) {}
 
-  bool wait_for_autopilot(double timeout_s, const std::stop_token& stop);
-  VehicleState state() const;
-  bool send(const Setpoint& setpoint);
-  void request(Command command);
-  std::optional<CommandReport> next_report();
-  LinkCounts counts() const;
-  std::uint32_t autopilot_system_id() const { return ready_ ? system_id_ : 0; }
+MavsdkLink::Impl::Listener::~Listener() {
+  close();
+}
 
- private:
-  using Handler = void (Impl::*)(const json& fields);
-  struct Subscription {
-    Impl* self = nullptr;
-    Handler handler = nullptr;
-    mavsdk_subscription_t handle = nullptr;
-  };
+void MavsdkLink::Impl::Listener::close() {
+  for (Subscription& s : subscriptions_) {
+    if (s.handle != nullptr) mavsdk_mavlink_direct_unsubscribe_message(direct_.get(), std::exchange(s.handle, nullptr));
+  }
+}
 
-  static void on_message(mavsdk_mavlink_message_t message, void* subscription) noexcept;  // NOLINT: see there
-  void subscribe();
-  bool transmit(const char* name, const json& fields) const;
-  bool transmit(const px4::CommandLong& command) const;
-  void request_rates() const;
+void MavsdkLink::Impl::Listener::subscribe(std::span<const Interest> interests) {
+  for (const Interest& interest : interests) {
+    Subscription& s = subscriptions_.emplace_back(Subscription{this, interest, nullptr});
+    s.handle = mavsdk_mavlink_direct_subscribe_message(direct_.get(), interest.name, on_message, &s);
+  }
+}
 
-  void on_heartbeat(const json& fields);
-  void on_local_position(const json& fields);
-  void on_attitude(const json& fields);
-  void on_sys_status(const json& fields);
-  void on_extended_sys_state(const json& fields);
-  void on_estimator_status(const json& fields);
-  void on_command_ack(const json& fields);
-
-  const Clock& clock_;
-  const double created_;
-  std::uint32_t own_system_id_ = 0;
-  std::uint32_t own_component_id_ = 0;
-
-  mutable std::mutex mutex_;  // guards the next block
-  VehicleState state_;
-  bool sys_status_heard_ = false;
-  std::string failed_health_;
-  bool estimator_ok_ = true;  // until it says otherwise
-  LinkCounts counts_;
-  LinkCounts at_heartbeat_;  // counts_ at the heartbeat before
-  CommandTracker commands_;
-
-  std::mutex wait_mutex_;            // serialises wait_for_autopilot
-  std::atomic<bool> ready_ = false;  // the handles below stand; set once
-  std::uint32_t system_id_ = 0;
-
-  // In the order of construction; MAVSDK aborts when they are destroyed in another than the reverse one.
-  MavsdkHandle mavsdk_;
-  SystemHandle system_;
-  DirectHandle direct_;
-  std::array<Subscription, 7> subscriptions_;
-};
+// On MAVSDK's callback thread. Nothing may be thrown through C: parsing and the handlers do not throw on any input, and
+// running out of memory ends the process by noexcept.
+void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, void* subscription) noexcept {  // NOLINT
+  const Subscription& s = *static_cast<const Subscription*>(subscription);
+  Impl& link = s.self->link_;
+  const bool wanted = message.system_id == s.self->system_id_ &&
+                      (s.interest.from == From::kAnyComponent || message.component_id == kAutopilotComponent);
+  if (wanted) {
+    const json fields = json::parse(message.fields_json, nullptr, /*allow_exceptions=*/false);
+    if (fields.is_object()) {
+      (link.*s.interest.handler)({message.system_id, message.component_id, fields});
+    } else {
+      const std::scoped_lock lock(link.mutex_);
+      link.malformed();
+    }
+  }
+  mavsdk_mavlink_direct_mavlink_message_destroy(&message);
+}
 
 MavsdkLink::Impl::Impl(const std::string& url, const Clock& clock) : clock_(clock), created_(clock.now()) {
   capture_mavsdk_log();
@@ -138,10 +98,10 @@ MavsdkLink::Impl::Impl(const std::string& url, const Clock& clock) : clock_(cloc
 }
 
 MavsdkLink::Impl::~Impl() {
-  // Unlocked: unsubscribing waits for a running callback, and those take the mutex.
-  for (const Subscription& s : subscriptions_) {
-    if (s.handle != nullptr) mavsdk_mavlink_direct_unsubscribe_message(direct_.get(), s.handle);
-  }
+  watcher_.request_stop();
+  if (watcher_.joinable()) watcher_.join();
+  // Unlocked, and while all that a running callback uses still stands.
+  if (autopilot_) autopilot_->close();
 }
 
 bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_token& stop) {
@@ -151,12 +111,12 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
     const double left = deadline - clock_.now();
     SystemHandle found(mavsdk_first_autopilot(mavsdk_.get(), std::max(0.0, std::min(left, kWaitSlice_s))));
     if (found) {
-      system_id_ = mavsdk_system_get_system_id(found.get());
-      system_ = std::move(found);
-      direct_.reset(mavsdk_mavlink_direct_create(system_.get()));
-      subscribe();
+      autopilot_ = std::make_unique<Listener>(*this, std::move(found));
+      system_id_ = autopilot_->system_id();
+      autopilot_->subscribe(interests());
       ready_ = true;
-      request_rates();
+      request_streams({false, true, true, true});
+      watcher_ = std::jthread([this](const std::stop_token& end) { watch_other_systems(end); });
     } else if (left <= 0.0) {
       break;
     }
@@ -164,46 +124,35 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
   return ready_;
 }
 
-void MavsdkLink::Impl::subscribe() {
-  constexpr std::array<std::pair<const char*, Handler>, 7> kHandlers{{
-      {"HEARTBEAT", &Impl::on_heartbeat},
-      {"LOCAL_POSITION_NED", &Impl::on_local_position},
-      {"ATTITUDE", &Impl::on_attitude},
-      {"SYS_STATUS", &Impl::on_sys_status},
-      {"EXTENDED_SYS_STATE", &Impl::on_extended_sys_state},
-      {"ESTIMATOR_STATUS", &Impl::on_estimator_status},
-      {"COMMAND_ACK", &Impl::on_command_ack},
+// MAVSDK's mavlink_direct hears one system; whoever else speaks on the connection gets a listener of its own.
+void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
+  static constexpr std::array<Interest, 2> kInterests{{
+      {"HEARTBEAT", &Impl::on_other_heartbeat, From::kAutopilot},
+      {"ADSB_VEHICLE", &Impl::on_adsb_vehicle, From::kAnyComponent},
   }};
-  for (std::size_t i = 0; i < kHandlers.size(); ++i) {
-    Subscription& s = subscriptions_[i];
-    s.self = this;
-    s.handler = kHandlers[i].second;
-    s.handle = mavsdk_mavlink_direct_subscribe_message(direct_.get(), kHandlers[i].first, on_message, &s);
-  }
-}
-
-// On MAVSDK's callback thread. Nothing may be thrown through C: parsing and the handlers do not throw on any input, and
-// running out of memory ends the process by noexcept.
-void MavsdkLink::Impl::on_message(mavsdk_mavlink_message_t message, void* subscription) noexcept {  // NOLINT
-  const Subscription& s = *static_cast<const Subscription*>(subscription);
-  Impl& self = *s.self;
-  if (message.system_id == self.system_id_ && message.component_id == kAutopilotComponent) {
-    const json fields = json::parse(message.fields_json, nullptr, /*allow_exceptions=*/false);
-    if (fields.is_object()) {
-      (self.*s.handler)(fields);
-    } else {
-      const std::scoped_lock lock(self.mutex_);
-      ++self.counts_.malformed;
+  std::set<std::uint32_t> known{system_id_};
+  std::mutex nobody_elses;
+  std::condition_variable_any never;
+  std::unique_lock lock(nobody_elses);
+  while (!stop.stop_requested()) {
+    std::size_t count = 0;
+    mavsdk_system_t* const systems = mavsdk_get_systems(mavsdk_.get(), &count);
+    for (std::size_t i = 0; systems != nullptr && i < count; ++i) {
+      SystemHandle system(systems[i]);
+      if (!known.insert(mavsdk_system_get_system_id(system.get())).second) continue;
+      others_.push_back(std::make_unique<Listener>(*this, std::move(system)));
+      others_.back()->subscribe(kInterests);
     }
+    if (systems != nullptr) mavsdk_free_systems_array(systems);
+    (void)never.wait_for(lock, stop, kLookForSystems, [] { return false; });
   }
-  mavsdk_mavlink_direct_mavlink_message_destroy(&message);
 }
 
 bool MavsdkLink::Impl::transmit(const char* name, const json& fields) const {
   const std::string text = fields.dump();
   const mavsdk_mavlink_message_t message{name,       own_system_id_,      own_component_id_,
                                          system_id_, kAutopilotComponent, text.c_str()};
-  return mavsdk_mavlink_direct_send_message(direct_.get(), message) == MAVSDK_MAVLINK_DIRECT_RESULT_SUCCESS;
+  return mavsdk_mavlink_direct_send_message(autopilot_->direct(), message) == MAVSDK_MAVLINK_DIRECT_RESULT_SUCCESS;
 }
 
 bool MavsdkLink::Impl::transmit(const px4::CommandLong& command) const {
@@ -215,136 +164,6 @@ bool MavsdkLink::Impl::transmit(const px4::CommandLong& command) const {
     fields["param" + std::to_string(i + 1)] = command.params[i];  // NaN becomes null, and MAVSDK reads null as NaN
   }
   return transmit("COMMAND_LONG", fields);
-}
-
-// A request that is lost, refused or not followed is made again at the next heartbeat.
-void MavsdkLink::Impl::request_rates() const {
-  (void)transmit(px4::message_interval(kMessageLocalPosition, kTelemetryHz));
-  (void)transmit(px4::message_interval(kMessageAttitude, kTelemetryHz));
-}
-
-void MavsdkLink::Impl::on_heartbeat(const json& fields) {
-  std::uint32_t autopilot = 0;
-  std::uint32_t base_mode = 0;
-  std::uint32_t custom_mode = 0;
-  const bool whole = read(fields, "autopilot", autopilot) && read(fields, "base_mode", base_mode) &&
-                     read(fields, "custom_mode", custom_mode);
-  const double now = clock_.now();
-  bool slow = false;
-  {
-    const std::scoped_lock lock(mutex_);
-    if (!whole || autopilot == px4::kAutopilotInvalid) {
-      ++counts_.malformed;
-      return;
-    }
-    if (state_.heartbeat_stamp >= 0.0) {
-      const double wanted = kRateTolerance * kTelemetryHz * (now - state_.heartbeat_stamp);
-      slow = static_cast<double>(counts_.positions - at_heartbeat_.positions) < wanted ||
-             static_cast<double>(counts_.attitudes - at_heartbeat_.attitudes) < wanted;
-    }
-    ++counts_.heartbeats;
-    at_heartbeat_ = counts_;
-    state_.heartbeat_stamp = now;
-    state_.armed = (base_mode & px4::kArmedFlag) != 0U;
-    state_.mode = px4::flight_mode(static_cast<std::uint8_t>(autopilot), custom_mode);
-  }
-  if (slow && ready_) request_rates();
-}
-
-void MavsdkLink::Impl::on_local_position(const json& fields) {
-  const Vec3 position_ned = vector(fields, "x", "y", "z");
-  const Vec3 velocity_ned = vector(fields, "vx", "vy", "vz");
-  const double now = clock_.now();
-  const std::scoped_lock lock(mutex_);
-  if (!position_ned.allFinite() || !velocity_ned.allFinite()) {
-    ++counts_.malformed;
-    return;
-  }
-  ++counts_.positions;
-  state_.position_stamp = now;
-  state_.position = enu_from_ned(position_ned);
-  state_.velocity = enu_from_ned(velocity_ned);
-}
-
-void MavsdkLink::Impl::on_attitude(const json& fields) {
-  const double heading = number(fields, "yaw");
-  const std::scoped_lock lock(mutex_);
-  if (!std::isfinite(heading)) {
-    ++counts_.malformed;
-    return;
-  }
-  ++counts_.attitudes;
-  state_.yaw = yaw_enu_from_heading(heading);
-}
-
-void MavsdkLink::Impl::on_sys_status(const json& fields) {
-  std::uint32_t present = 0;
-  std::uint32_t enabled = 0;
-  std::uint32_t health = 0;
-  const bool whole = read(fields, "onboard_control_sensors_present", present) &&
-                     read(fields, "onboard_control_sensors_enabled", enabled) &&
-                     read(fields, "onboard_control_sensors_health", health);
-  const std::scoped_lock lock(mutex_);
-  if (!whole) {
-    ++counts_.malformed;
-    return;
-  }
-  sys_status_heard_ = true;
-  failed_health_ = px4::failed_health(present, enabled, health);
-  state_.armable = (health & px4::kPrearmCheck) != 0U;
-}
-
-void MavsdkLink::Impl::on_extended_sys_state(const json& fields) {
-  std::uint32_t landed_state = 0;
-  const bool whole = read(fields, "landed_state", landed_state);
-  const std::scoped_lock lock(mutex_);
-  if (!whole) {
-    ++counts_.malformed;
-    return;
-  }
-  state_.in_air = px4::in_air(static_cast<int>(landed_state));
-}
-
-void MavsdkLink::Impl::on_estimator_status(const json& fields) {
-  std::uint32_t flags = 0;
-  const bool whole = read(fields, "flags", flags);
-  const std::scoped_lock lock(mutex_);
-  if (!whole) {
-    ++counts_.malformed;
-    return;
-  }
-  estimator_ok_ = px4::estimator_has_local_position(flags);
-}
-
-void MavsdkLink::Impl::on_command_ack(const json& fields) {
-  std::uint32_t command = 0;
-  std::uint32_t result = 0;
-  std::uint32_t target_system = 0;
-  std::uint32_t target_component = 0;
-  const bool whole = read(fields, "command", command) && read(fields, "result", result);
-  // Extension fields, 0 from autopilots that do not send them: then the answer is taken as ours.
-  (void)read(fields, "target_system", target_system);
-  (void)read(fields, "target_component", target_component);
-  const double now = clock_.now();
-  const std::scoped_lock lock(mutex_);
-  if (!whole) {
-    ++counts_.malformed;
-    return;
-  }
-  const bool ours = (target_system == 0 || target_system == own_system_id_) &&
-                    (target_component == 0 || target_component == own_component_id_);
-  if (ours) commands_.acknowledge(static_cast<std::uint16_t>(command), static_cast<int>(result), now);
-}
-
-VehicleState MavsdkLink::Impl::state() const {
-  const double now = clock_.now();
-  const std::scoped_lock lock(mutex_);
-  VehicleState state = state_;
-  const bool fresh = state.position_stamp >= 0.0 && now - state.position_stamp <= kPositionMaxAge_s;
-  state.local_position_ok = fresh && estimator_ok_;
-  state.health = sys_status_heard_ ? failed_health_ : "no SYS_STATUS yet";
-  if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";
-  return state;
 }
 
 bool MavsdkLink::Impl::send(const Setpoint& setpoint) {
@@ -399,6 +218,59 @@ std::optional<CommandReport> MavsdkLink::Impl::next_report() {
   return commands_.next(now);
 }
 
+std::vector<std::optional<px4::Parameter>> MavsdkLink::Impl::read_parameters(std::span<const std::string> names,
+                                                                             double timeout_s,
+                                                                             const std::stop_token& stop) {
+  std::vector<std::optional<px4::Parameter>> result(names.size());
+  if (!ready_) return result;
+  const std::scoped_lock one_at_a_time(parameter_mutex_);
+  std::unique_lock lock(mutex_);
+  const auto missing = [&](const std::string& name) { return is_parameter_name(name) && !parameters_.contains(name); };
+  const auto complete = [&] { return std::none_of(names.begin(), names.end(), missing); };
+  parameters_.clear();
+  for (int i = 0; i < kParameterTries && !complete() && !stop.stop_requested(); ++i) {
+    std::vector<std::string> asked;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(asked), missing);
+    lock.unlock();  // answers come while requests go out
+    for (const std::string& name : asked) {
+      (void)transmit("PARAM_REQUEST_READ", {{"target_system", system_id_},
+                                            {"target_component", kAutopilotComponent},
+                                            {"param_id", name},
+                                            {"param_index", -1}});
+    }
+    lock.lock();
+    (void)parameter_came_.wait_for(lock, stop, std::chrono::duration<double>(timeout_s / kParameterTries), complete);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = parameters_.find(names[i]);
+    if (found != parameters_.end()) result[i] = found->second;
+  }
+  return result;
+}
+
+std::optional<LinkNotice> MavsdkLink::Impl::next_notice() {
+  const std::scoped_lock lock(mutex_);
+  if (notices_.empty()) return std::nullopt;
+  LinkNotice oldest = std::move(notices_.front());
+  notices_.pop_front();
+  return oldest;
+}
+
+bool MavsdkLink::Impl::next_adsb(AdsbReport& report) {
+  const std::scoped_lock lock(mutex_);
+  if (adsb_.empty()) return false;
+  report = adsb_.front();
+  adsb_.pop_front();
+  return true;
+}
+
+LinkInfo MavsdkLink::Impl::info() const {
+  const std::scoped_lock lock(mutex_);
+  LinkInfo info = info_;
+  info.other_systems.assign(other_autopilots_.begin(), other_autopilots_.end());
+  return info;
+}
+
 LinkCounts MavsdkLink::Impl::counts() const {
   const std::scoped_lock lock(mutex_);
   return counts_;
@@ -422,6 +294,25 @@ void MavsdkLink::request(Command command) {
 }
 std::optional<CommandReport> MavsdkLink::next_report() {
   return impl_->next_report();
+}
+std::optional<LinkNotice> MavsdkLink::next_notice() {
+  return impl_->next_notice();
+}
+bool MavsdkLink::next_adsb(AdsbReport& report) {
+  return impl_->next_adsb(report);
+}
+std::vector<std::optional<px4::Parameter>> MavsdkLink::read_parameters(std::span<const std::string> names,
+                                                                       double timeout_s, const std::stop_token& stop) {
+  return impl_->read_parameters(names, timeout_s, stop);
+}
+void MavsdkLink::restart_rates() {
+  impl_->restart_rates();
+}
+std::vector<StreamRate> MavsdkLink::rates() const {
+  return impl_->rates();
+}
+LinkInfo MavsdkLink::info() const {
+  return impl_->info();
 }
 LinkCounts MavsdkLink::counts() const {
   return impl_->counts();

@@ -6,10 +6,15 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include "bridge/adsb_tracks.hpp"
 #include "bridge/clock.hpp"
+#include "bridge/px4.hpp"
 #include "bridge/vehicle_link.hpp"
 
 namespace jink::bridge {
@@ -19,23 +24,65 @@ struct LinkCounts {
   std::uint64_t heartbeats = 0;
   std::uint64_t positions = 0;  ///< LOCAL_POSITION_NED
   std::uint64_t attitudes = 0;
+  std::uint64_t odometries = 0;  ///< usable ones
   std::uint64_t setpoints_sent = 0;
-  std::uint64_t malformed = 0;  ///< messages left out: missing or non-finite fields
+  std::uint64_t malformed = 0;         ///< messages left out: missing or non-finite fields
+  std::uint64_t late = 0;              ///< positions left out: older than one that had come before
+  std::uint32_t other_autopilots = 0;  ///< systems beside ours whose component 1 calls itself an autopilot
+  std::uint64_t dropped_adsb = 0;      ///< reports thrown away because nobody took them
+};
+
+/// What the autopilot has told of itself, beside VehicleState.
+struct LinkInfo {
+  std::optional<std::uint32_t> autopilot;    ///< MAV_AUTOPILOT; px4::kAutopilotPx4
+  std::optional<px4::Version> version;       ///< AUTOPILOT_VERSION, asked for until it comes
+  std::optional<std::uint32_t> estimator;    ///< ESTIMATOR_STATUS.flags
+  std::optional<double> battery_percent;     ///< SYS_STATUS.battery_remaining
+  bool rc_receiver = false;                  ///< SYS_STATUS: present and healthy
+  std::optional<double> round_trip_s;        ///< the shortest TIMESYNC answer; asked once a second
+  std::vector<std::uint32_t> other_systems;  ///< system ids of LinkCounts::other_autopilots
+};
+
+/// Something that a person should read: "second_autopilot", "autopilot_rebooted", "autopilot_text" (STATUSTEXT, which
+/// PX4 sends only to a link on which a ground station's heartbeat arrives too).
+struct LinkNotice {
+  std::string name;
+  std::string detail;
+};
+
+/// How a stream of messages came since restart_rates().
+struct StreamRate {
+  const char* message = "";    ///< MAVLink's name
+  double asked_hz = 0.0;       ///< what jink asks for; the heartbeat is not asked for: 1 Hz
+  double measured_hz = 0.0;    ///< 0 where fewer than two came
+  double largest_gap_s = 0.0;  ///< the present silence included
+  std::uint64_t count = 0;
 };
 
 /// A companion computer (MAVLink component of the vehicle's own system, with its own heartbeat) and the first autopilot
-/// that it hears. All functions are safe from any thread; state(), send(), request() and next_report() never block.
+/// that it hears, which stays its own: what other systems say changes nothing but LinkCounts::other_autopilots and the
+/// aircraft of next_adsb(). All functions are safe from any thread; only wait_for_autopilot() and read_parameters()
+/// block.
 ///
-/// state(): `heartbeat_stamp`, `armed` and `mode` come from the HEARTBEAT of that autopilot alone, which PX4 sends once
-/// a second and not on change. `local_position_ok` needs a position younger than kPositionMaxAge_s and, where the
-/// autopilot sends ESTIMATOR_STATUS, an estimator that holds it. LOCAL_POSITION_NED and ATTITUDE are asked for at
-/// kTelemetryHz, and again after each heartbeat interval in which they came slower.
+/// state(): `heartbeat_stamp`, `armed`, `mode` and `failsafe` come from the HEARTBEAT of that autopilot alone, which
+/// PX4 sends once a second and not on change. `local_position_ok` needs a position younger than kPositionMaxAge_s and,
+/// where the autopilot sends ESTIMATOR_STATUS, an estimator that holds it. `estimate_resets`: see EstimateResets.
+/// `battery`: the worst of the batteries' BATTERY_STATUS.charge_state; where that says nothing, SYS_STATUS's remaining
+/// charge by PX4's default thresholds. `origin` is GPS_GLOBAL_ORIGIN's, asked for with each heartbeat until it is told.
+/// `reboots`: the autopilot's time went back by more than kReboot_s; then origin, health and battery are unknown anew.
+/// LOCAL_POSITION_NED and ATTITUDE are asked for at kTelemetryHz, ODOMETRY at kOdometryHz, and again after each
+/// heartbeat interval in which they came slower. A position that is older than one that came before is left out.
+///
+/// A silence of any length ends by itself: nothing has to be opened again. Over UDP, though, MAVSDK sends nothing to a
+/// peer that was silent for 10 s, until it speaks.
 ///
 /// request(): see CommandTracker for what a report means. A command is sent once; repeating it is the caller's.
 class MavsdkLink final : public VehicleLink {
  public:
   static constexpr double kTelemetryHz = 50.0;
+  static constexpr double kOdometryHz = 30.0;  ///< what PX4 sends a companion unasked
   static constexpr double kPositionMaxAge_s = 1.0;
+  static constexpr double kReboot_s = 2.0;
 
   /// Opens `connection_url` (udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT, serial:///dev/NAME:BAUD, ...)
   /// and waits for nobody. `clock` must outlive the link.
@@ -59,7 +106,23 @@ class MavsdkLink final : public VehicleLink {
   void request(Command command) override;
   [[nodiscard]] std::optional<CommandReport> next_report() override;
 
+  /// The oldest notice not yet taken, if any; at most 64 wait.
+  [[nodiscard]] std::optional<LinkNotice> next_notice();
+  /// Takes the oldest ADSB_VEHICLE of any sender on the connection; false when there is none. At most 1024 wait.
+  [[nodiscard]] bool next_adsb(AdsbReport& report);
+
+  /// Asks for parameters by name, three times within `timeout_s`, and blocks until all came or `timeout_s` or `stop`.
+  /// One result for each name, in order; nothing for a name that got no answer, as unknown ones do.
+  [[nodiscard]] std::vector<std::optional<px4::Parameter>> read_parameters(std::span<const std::string> names,
+                                                                           double timeout_s,
+                                                                           const std::stop_token& stop = {});
+
+  /// Begins to measure how HEARTBEAT, LOCAL_POSITION_NED, ATTITUDE and ODOMETRY come.
+  void restart_rates();
+  [[nodiscard]] std::vector<StreamRate> rates() const;
+
   [[nodiscard]] LinkCounts counts() const;
+  [[nodiscard]] LinkInfo info() const;
   /// MAVLink system id of the autopilot; 0 before it is found.
   [[nodiscard]] std::uint32_t autopilot_system_id() const;
   /// The newest warning or error in MAVSDK's own log, for diagnostics; of all links of this process. MAVSDK's log is

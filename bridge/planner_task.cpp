@@ -7,9 +7,10 @@
 
 namespace jink::bridge {
 
-ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock)
+ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock, Wake* done)
     : settings_(settings),
       clock_(clock),
+      done_(done),
       planner_(settings.horizon, settings.optimizer),
       pool_(settings.threads),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -70,6 +71,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
       const std::scoped_lock lock(mutex_);
       failure_ = std::current_exception();
     }
+    if (done_ != nullptr) done_->notify();
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bridge/clock.hpp"
+#include "bridge/wake.hpp"
 #include "planner/horizon_planner.hpp"
 
 namespace jink::bridge {
@@ -25,6 +26,7 @@ struct PlanJob {
   double begun = 0.0;
   double start = 0.0;
   double newest_track = -1.0;  ///< reception of the newest track message that went in; negative: none
+  planner::Vec3 estimate_shift = planner::Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };
 
 struct PlanResult {
@@ -57,7 +59,8 @@ struct PlannerTaskSettings {
 /// Plans in a thread of its own with a pool of `threads`, until the generations are done or the deadline passes.
 class ThreadedPlanner final : public PlannerTask {
  public:
-  ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock);
+  /// `done`, where there is one, is notified when a plan is ready; it outlives the planner.
+  ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock, Wake* done = nullptr);
   ~ThreadedPlanner() override;
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override;
@@ -70,6 +73,7 @@ class ThreadedPlanner final : public PlannerTask {
 
   PlannerTaskSettings settings_;
   const Clock& clock_;
+  Wake* done_;
   planner::HorizonPlanner planner_;
   planner::WorkerPool pool_;
   mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_

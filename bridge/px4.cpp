@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/px4.hpp"
 
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -64,6 +66,11 @@ constexpr std::array<std::pair<unsigned, std::string_view>, 28> kHealthItems{{
     {30, "propulsion"},
 }};
 
+void append(std::string& list, std::string_view item) {
+  if (!list.empty()) list += ", ";
+  list += item;
+}
+
 }  // namespace
 
 FlightMode flight_mode(std::uint8_t autopilot, std::uint32_t custom_mode) {
@@ -89,15 +96,11 @@ FlightMode flight_mode(std::uint8_t autopilot, std::uint32_t custom_mode) {
 std::string failed_health(std::uint32_t present, std::uint32_t enabled, std::uint32_t health) {
   const std::uint32_t failed = present & enabled & ~health;
   std::string text;
-  const auto add = [&text](std::string_view name) {
-    if (!text.empty()) text += ", ";
-    text += name;
-  };
   for (const auto& [bit, name] : kHealthItems) {
-    if (((failed >> bit) & 1U) != 0U) add(name);
+    if (((failed >> bit) & 1U) != 0U) append(text, name);
   }
   // PX4 sets this bit in `health` alone, not in `present` or `enabled`.
-  if ((health & kPrearmCheck) == 0U) add("pre-arm check");
+  if ((health & kPrearmCheck) == 0U) append(text, "pre-arm check");
   return text;
 }
 
@@ -108,9 +111,76 @@ bool estimator_has_local_position(std::uint32_t flags) {
   return (flags & kVelocity) == kVelocity && (flags & kHorizontal) != 0U && (flags & kVertical) != 0U;
 }
 
+std::string estimator_complaints(std::uint32_t flags) {
+  constexpr std::array<std::pair<std::uint32_t, std::string_view>, 4> kNeeded{
+      {{1U, "no attitude"}, {2U, "no horizontal velocity"}, {4U, "no vertical velocity"}, {32U, "no height"}}};
+  constexpr std::array<std::pair<std::uint32_t, std::string_view>, 2> kFaults{
+      {{1024U, "GPS glitch"}, {2048U, "accelerometer error"}}};
+  constexpr std::uint32_t kHorizontal = 8U | 16U;
+  std::string text;
+  for (const auto& [bit, name] : kNeeded) {
+    if ((flags & bit) == 0U) append(text, name);
+  }
+  if ((flags & kHorizontal) == 0U) append(text, "no horizontal position");
+  for (const auto& [bit, name] : kFaults) {
+    if ((flags & bit) != 0U) append(text, name);
+  }
+  return text;
+}
+
+BatteryState battery_state(std::uint32_t charge_state) {
+  switch (charge_state) {
+    case 1:  // OK
+    case 7:  // CHARGING
+      return BatteryState::kOk;
+    case 2:
+      return BatteryState::kLow;
+    case 3:  // CRITICAL
+    case 4:  // EMERGENCY
+    case 5:  // FAILED
+    case 6:  // UNHEALTHY
+      return BatteryState::kCritical;
+    default:
+      return BatteryState::kUnknown;
+  }
+}
+
+BatteryState battery_state_from_remaining(double remaining_percent) {
+  constexpr double kLow = 15.0;      // BAT_LOW_THR
+  constexpr double kCritical = 7.0;  // BAT_CRIT_THR
+  if (!(remaining_percent >= 0.0 && remaining_percent <= 100.0)) return BatteryState::kUnknown;
+  if (remaining_percent <= kCritical) return BatteryState::kCritical;
+  return remaining_percent <= kLow ? BatteryState::kLow : BatteryState::kOk;
+}
+
+Version version(std::uint32_t flight_sw_version) {
+  const auto byte = [&](unsigned shift) { return static_cast<int>((flight_sw_version >> shift) & 0xffU); };
+  return {byte(24), byte(16), byte(8), byte(0)};
+}
+
+std::string to_string(const Version& version) {
+  std::string text =
+      std::to_string(version.major) + '.' + std::to_string(version.minor) + '.' + std::to_string(version.patch);
+  if (version.type == 0) return text + " development";
+  if (version.type < 128) return text + " alpha";
+  if (version.type < 192) return text + " beta";
+  return version.type < 255 ? text + " candidate" : text;
+}
+
+Parameter parameter(std::string name, std::uint32_t param_type, double field, bool bytewise) {
+  constexpr std::uint32_t kFirstReal = 9;  // MAV_PARAM_TYPE_REAL32; below stand the integers, 1 (UINT8) to 8 (INT64)
+  constexpr std::uint32_t kInt32 = 6;
+  Parameter result{std::move(name), param_type >= 1 && param_type < kFirstReal, field};
+  if (bytewise && param_type == kInt32 && std::isfinite(field)) {
+    result.value = std::bit_cast<std::int32_t>(static_cast<float>(field));
+  }
+  return result;
+}
+
+// IN_AIR, TAKEOFF, LANDING.
 bool in_air(int landed_state) {
   return landed_state >= 2 && landed_state <= 4;
-}  // IN_AIR, TAKEOFF, LANDING
+}
 
 std::string result_text(int result) {
   switch (result) {
@@ -151,6 +221,10 @@ CommandLong command_long(Command command) {
 
 CommandLong message_interval(std::uint32_t message_id, double rate_hz) {
   return {kSetMessageInterval, {static_cast<double>(message_id), 1e6 / rate_hz}};  // interval in microseconds
+}
+
+CommandLong request_message(std::uint32_t message_id) {
+  return {kRequestMessage, {static_cast<double>(message_id)}};
 }
 
 }  // namespace jink::bridge::px4

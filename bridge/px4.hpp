@@ -21,6 +21,9 @@ inline constexpr std::uint16_t kNavLand = 21;              ///< MAV_CMD_NAV_LAND
 inline constexpr std::uint16_t kDoSetMode = 176;           ///< MAV_CMD_DO_SET_MODE
 inline constexpr std::uint16_t kArmDisarm = 400;           ///< MAV_CMD_COMPONENT_ARM_DISARM
 inline constexpr std::uint16_t kSetMessageInterval = 511;  ///< MAV_CMD_SET_MESSAGE_INTERVAL
+inline constexpr std::uint16_t kRequestMessage = 512;      ///< MAV_CMD_REQUEST_MESSAGE
+
+inline constexpr std::uint32_t kStateCritical = 5;  ///< MAV_STATE_CRITICAL of HEARTBEAT.system_status: PX4's failsafe
 
 inline constexpr int kResultAccepted = 0;    ///< MAV_RESULT_ACCEPTED
 inline constexpr int kResultInProgress = 5;  ///< MAV_RESULT_IN_PROGRESS: the final answer is still to come
@@ -34,6 +37,37 @@ inline constexpr int kResultInProgress = 5;  ///< MAV_RESULT_IN_PROGRESS: the fi
 
 /// Whether ESTIMATOR_STATUS.flags hold a position (absolute or relative) and velocity, horizontal and vertical.
 [[nodiscard]] bool estimator_has_local_position(std::uint32_t flags);
+
+/// What is missing in ESTIMATOR_STATUS.flags for a flight (position and velocity, horizontal and vertical, attitude),
+/// and what the estimator itself complains of (GPS glitch, accelerometer error), joined with ", "; empty: nothing.
+[[nodiscard]] std::string estimator_complaints(std::uint32_t flags);
+
+/// BATTERY_STATUS.charge_state; kUnknown where it says nothing (0) or is no MAV_BATTERY_CHARGE_STATE.
+[[nodiscard]] BatteryState battery_state(std::uint32_t charge_state);
+/// SYS_STATUS.battery_remaining in percent, by PX4's defaults: low from 15 % down, critical from 7 %; kUnknown for what
+/// is no percentage (-1: not known).
+[[nodiscard]] BatteryState battery_state_from_remaining(double remaining_percent);
+
+/// AUTOPILOT_VERSION.flight_sw_version.
+struct Version {
+  int major = 0;
+  int minor = 0;
+  int patch = 0;
+  int type = 0;  ///< FIRMWARE_VERSION_TYPE: 0 development, 64 alpha, 128 beta, 192 candidate, 255 release
+};
+[[nodiscard]] Version version(std::uint32_t flight_sw_version);
+/// "1.17.0 alpha"; a release has no word behind it.
+[[nodiscard]] std::string to_string(const Version& version);
+
+/// A parameter as the autopilot tells it.
+struct Parameter {
+  std::string name;
+  bool integer = false;
+  double value = 0.0;  ///< NaN: an integer whose bytes are no number as a float, which are those below 0
+};
+/// PARAM_VALUE: `field` carries a number, or the bytes of an integer as PX4 has it (`bytewise`). `param_type`:
+/// MAV_PARAM_TYPE.
+[[nodiscard]] Parameter parameter(std::string name, std::uint32_t param_type, double field, bool bytewise);
 
 /// Whether EXTENDED_SYS_STATE.landed_state is in the air, taking off or landing.
 [[nodiscard]] bool in_air(int landed_state);
@@ -49,5 +83,7 @@ struct CommandLong {
 [[nodiscard]] CommandLong command_long(Command command);
 /// Asks for a message at a rate. `rate_hz` > 0.
 [[nodiscard]] CommandLong message_interval(std::uint32_t message_id, double rate_hz);
+/// Asks for a message once.
+[[nodiscard]] CommandLong request_message(std::uint32_t message_id);
 
 }  // namespace jink::bridge::px4

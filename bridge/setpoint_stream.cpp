@@ -53,11 +53,12 @@ void SetpointStream::brake(double now, const std::optional<planner::TimedPoint>&
   Vec3 position = from.position;
   Vec3 velocity = from.velocity;
   double t = now;
+  const double braking = deceleration(position, velocity);
   while (velocity.norm() > kAtRest) {
     const double speed = velocity.norm();
-    const double next_speed = std::max(0.0, speed - settings_.braking * kBrakeStep);
+    const double next_speed = std::max(0.0, speed - braking * kBrakeStep);
     const Vec3 direction = velocity / speed;
-    stop.push_back({t, position, velocity, -settings_.braking * direction});
+    stop.push_back({t, position, velocity, -braking * direction});
     position += 0.5 * (speed + next_speed) * kBrakeStep * direction;
     velocity = next_speed * direction;
     t += kBrakeStep;
@@ -67,6 +68,24 @@ void SetpointStream::brake(double now, const std::optional<planner::TimedPoint>&
   next_.clear();
   is_plan_ = false;
   is_braking_ = true;
+}
+
+// A stop from speed v takes v²/2a; along each axis the volume leaves so much way.
+double SetpointStream::deceleration(const Vec3& position, const Vec3& velocity) const {
+  double needed = settings_.braking;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double v = velocity[axis];
+    const double way =
+        v > 0.0 ? settings_.volume.max[axis] - position[axis] : position[axis] - settings_.volume.min[axis];
+    if (v == 0.0 || way <= 0.0) continue;  // outside already: there is nothing to keep
+    needed = std::max(needed, std::abs(v) * velocity.norm() / (2.0 * way));
+  }
+  return std::min(needed, std::max(settings_.braking, settings_.hardest));
+}
+
+void SetpointStream::shift(const Vec3& by) {
+  for (planner::TimedPoint& point : current_) point.position += by;
+  for (planner::TimedPoint& point : next_) point.position += by;
 }
 
 void SetpointStream::learn(double t, const Vec3& position, double dt) {

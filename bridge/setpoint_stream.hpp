@@ -18,6 +18,8 @@ class SetpointStream {
     double acceleration_lead = 0.0;  ///< s: the acceleration is (attitude loop and rotors too)
     double drag = 0.0;               ///< 1/s: deceleration per speed that the acceleration makes up for, to begin with
     double braking = 2.0;            ///< m/s², deceleration of a brake
+    double hardest = 6.0;            ///< m/s², of a brake that would leave the volume
+    planner::Box volume{};           ///< in which a brake is to end
   };
   explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
 
@@ -27,8 +29,11 @@ class SetpointStream {
   /// before. Precondition: not empty.
   void follow(planner::TimedPath path);
   /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity,
-  /// then holds there. Does nothing while a brake is on.
+  /// then holds there. Where that would lead out of `volume` it brakes as hard as it takes to stay inside, up to
+  /// `hardest`. Does nothing while a brake is on.
   void brake(double now, const std::optional<planner::TimedPoint>& measured = {});
+  /// Moves all that is followed: the autopilot's estimate jumped by that, the vehicle did not move.
+  void shift(const Vec3& by);
 
   /// Where the vehicle is to be at time t. Precondition: active().
   [[nodiscard]] planner::TimedPoint reference(double t) const;
@@ -50,6 +55,8 @@ class SetpointStream {
   [[nodiscard]] planner::TimedPath ahead(double t) const;
 
  private:
+  [[nodiscard]] double deceleration(const Vec3& position, const Vec3& velocity) const;
+
   Settings settings_;
   double drag_;
   bool is_plan_ = false;

@@ -2,6 +2,8 @@
 #include "bridge/supervisor.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <utility>
 
 namespace jink::bridge {
@@ -16,8 +18,23 @@ constexpr double kClimbTimeout = 30.0;    // s
 constexpr double kLandingTimeout = 90.0;  // s
 constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
 constexpr double kLongestStop = 4.0;      // s
+constexpr double kFailsafePasses =
+    1.5;  // s: PX4 is back in OFFBOARD 0.4 s after the stream, a heartbeat may be 1 s old
+constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each second without one
 
 using Motion = Decision::Motion;
+
+std::string metres(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f m", value);
+  return text.data();
+}
+
+/// Modes in which the autopilot knows where to fly to; in the others it waits for the sticks, and sinks without them.
+bool flies_by_itself(FlightMode mode) {
+  return mode == FlightMode::kHold || mode == FlightMode::kLand || mode == FlightMode::kReturn ||
+         mode == FlightMode::kTakeoff || mode == FlightMode::kMission;
+}
 
 }  // namespace
 
@@ -96,9 +113,20 @@ bool Supervisor::exhausted(double now) const {
 
 void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   if (phase_ == Phase::kDone || phase_ == Phase::kStopping || phase_ == Phase::kHandover) return;
+  if (phase_ == Phase::kLanding && land_) {  // a landing that must be: it goes on without us
+    reason_ += "; " + reason + ", the landing goes on";
+    finish(pending_outcome_, {});
+    return;
+  }
   reason_ = std::move(reason);
   pending_outcome_ = outcome;
   waiting_for_.clear();
+  hazard_.clear();
+  if (phase_ == Phase::kLanding) {
+    landing_interrupted_ = true;
+    enter(Phase::kHandover, now);
+    return;
+  }
   if (phase_ == Phase::kEngaging && asked_for_) unsettled_until_ = asked_ + kSettling;
   const bool never_flew = phase_ == Phase::kWaiting;
   if (never_flew) {
@@ -116,7 +144,11 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
   if (picture.report && !picture.report->accepted) {
     refusal_ = std::string(to_string(picture.report->command)) + " refused: " + picture.report->detail;
   }
-  if (taken_over(state)) return {};
+  const double elapsed = updated_ < 0.0 ? 0.0 : now - updated_;
+  updated_ = now;
+  hazard_time_ = std::max(0.0, hazard_time_ + (hazard_.empty() ? -kForgetting : 1.0) * elapsed);
+  if (taken_over(now, state)) return {};
+  flee_battery(now, state);
   switch (phase_) {
     case Phase::kWaiting:
       return wait(now, state, picture);
@@ -129,7 +161,7 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
     case Phase::kStopping: {
       const double stopping = now - entered_;
       if (!state.in_air || stopping > kLongestStop || (picture.at_rest && stopping > kShortestStop)) {
-        enter(Phase::kHandover, now);
+        enter(land_ && state.in_air ? Phase::kLanding : Phase::kHandover, now);
       }
       return {Motion::kBrake, {}};
     }
@@ -144,7 +176,7 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
 }
 
 // True, and the flight is over, where somebody else changed the mode or the motors went off.
-bool Supervisor::taken_over(const VehicleState& state) {
+bool Supervisor::taken_over(double now, const VehicleState& state) {
   const bool asked = phase_ == Phase::kEngaging || phase_ == Phase::kStopping || phase_ == Phase::kHandover;
   const bool ours = phase_ == Phase::kEngaging || phase_ == Phase::kClimbing || phase_ == Phase::kFlying ||
                     phase_ == Phase::kStopping;
@@ -154,13 +186,45 @@ bool Supervisor::taken_over(const VehicleState& state) {
     what = "the autopilot disarmed in flight";
   } else if ((ours && offboard_seen_ && state.mode != FlightMode::kOffboard) ||
              (asked && !offboard_seen_ && state.mode != mode_before_)) {
+    if (state.failsafe && phase_ == Phase::kEngaging) {  // of a companion before us: our stream ends it
+      offboard_seen_ = false;
+      return false;
+    }
+    if (state.failsafe) return failsafe_took_over(now, state);
     what = "the mode was changed to " + std::string(to_string(state.mode)) + " by pilot or autopilot";
   } else {
+    failsafe_since_ = -1.0;
     return false;
   }
   if (!reason_.empty()) reason_ += "; then " + what;
   finish(pending_outcome_ == Outcome::kNone ? Outcome::kAborted : pending_outcome_, what);
   return true;
+}
+
+// The autopilot's failsafe flies. True where it is left the vehicle for good.
+bool Supervisor::failsafe_took_over(double now, const VehicleState& state) {
+  if (failsafe_since_ < 0.0) failsafe_since_ = now;
+  if ((phase_ == Phase::kFlying || phase_ == Phase::kClimbing) && now - failsafe_since_ <= kFailsafePasses)
+    return false;
+  const std::string what = "the autopilot's failsafe took over, mode " + std::string(to_string(state.mode));
+  reason_ += (reason_.empty() ? "" : "; then ") + what;
+  if (pending_outcome_ == Outcome::kNone) pending_outcome_ = Outcome::kAborted;
+  hazard_.clear();
+  if (flies_by_itself(state.mode)) {
+    finish(pending_outcome_, {});
+    return true;
+  }
+  rescue_ = true;
+  enter(Phase::kHandover, now);
+  return false;
+}
+
+// Where the battery ends, the flight ends on the ground.
+void Supervisor::flee_battery(double now, const VehicleState& state) {
+  if (state.battery != BatteryState::kCritical) return;
+  if (phase_ != Phase::kClimbing && phase_ != Phase::kFlying) return;
+  stop(now, Outcome::kAborted, "the battery is critical");
+  land_ = true;
 }
 
 // What a flight cannot begin without, into waiting_for_; empty: nothing.
@@ -181,12 +245,15 @@ void Supervisor::find_missing(double now, const VehicleState& state, const Fligh
   } else if (!ready) {
     waiting_for_ =
         "the autopilot to be ready: " + (state.health.empty() ? std::string("local position") : state.health);
+  } else if (state.battery == BatteryState::kLow || state.battery == BatteryState::kCritical) {
+    waiting_for_ = "a charged battery: it is " + std::string(to_string(state.battery));
   }
 }
 
 Decision Supervisor::wait(double now, const VehicleState& state, const FlightPicture& picture) {
   find_missing(now, state, picture);
   if (waiting_for_.empty()) {
+    if (!state.in_air && outside_fence(state)) return {};
     mode_before_ = state.mode;
     enter(Phase::kEngaging, now);
     return {Motion::kStay, {}};
@@ -197,6 +264,17 @@ Decision Supervisor::wait(double now, const VehicleState& state, const FlightPic
     finish(Outcome::kAborted, "waited in vain for " + waiting_for_);
   }
   return {};
+}
+
+// True, and the flight is over before it began, where the vehicle stands beside the volume that it may fly in.
+bool Supervisor::outside_fence(const VehicleState& state) {
+  const auto across = [](const planner::Box& box, const Vec3& p) {
+    return p.x() < box.min.x() || p.x() > box.max.x() || p.y() < box.min.y() || p.y() > box.max.y();
+  };
+  if (!across(mission_.geofence, state.position)) return false;
+  finish(Outcome::kAborted, "the vehicle stands outside the geofence, at east " + metres(state.position.x()) +
+                                ", north " + metres(state.position.y()));
+  return true;
 }
 
 Decision Supervisor::engage(double now, const VehicleState& state, const FlightPicture& picture) {
@@ -244,10 +322,14 @@ Decision Supervisor::climb(double now, const VehicleState& state, const FlightPi
   return {Motion::kTakeoffPoint, {}};
 }
 
-// Brakes while a hazard lasts, and ends the flight where it does not pass.
+// Brakes while a hazard lasts, and ends the flight where it does not pass or comes again and again.
 Decision Supervisor::fall_back(double now) {
   if (hazard_since_ < 0.0) hazard_since_ = now;
-  if (now - hazard_since_ > settings_.give_up) stop(now, Outcome::kAborted, hazard_);
+  if (now - hazard_since_ > settings_.give_up) {
+    stop(now, Outcome::kAborted, std::string(hazard_));
+  } else if (hazard_time_ > 2.0 * settings_.give_up) {
+    stop(now, Outcome::kAborted, hazard_ + ", again and again");
+  }
   return {Motion::kBrake, {}};
 }
 
@@ -257,6 +339,10 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
     hazard_ = "the vehicle's position is stale";
   } else if (now - state.heartbeat_stamp > kHeartbeatTimeout) {
     hazard_ = "the autopilot's heartbeat is missing";
+  } else if (failsafe_since_ >= 0.0) {
+    hazard_ = "the autopilot's failsafe flies, mode " + std::string(to_string(state.mode));
+  } else if (!state.local_position_ok) {
+    hazard_ = "the autopilot has lost its position";
   } else if (mission_.tracks.required && now - picture.newest_tracks > mission_.tracks.timeout_s) {
     hazard_ = "the obstacle tracks are stale";
   } else if (phase_ == Phase::kFlying && now - std::max(picture.newest_plan, entered_) > settings_.stale_plan) {
@@ -285,10 +371,35 @@ Decision Supervisor::fly(double now, const VehicleState& state, const FlightPict
   return fall_back(now);
 }
 
+// Out of a failsafe that only sinks. Without a position HOLD cannot be flown, and the failsafe is what is left.
+Decision Supervisor::rescue(double now, const VehicleState& state) {
+  if (state.mode == FlightMode::kOffboard) {  // it went back by itself: the stream was still on its way
+    rescue_ = false;
+    return {Motion::kBrake, ask(Command::kHold, now)};
+  }
+  if (!state.failsafe || flies_by_itself(state.mode) || (!state.armed && !state.in_air)) {
+    finish(pending_outcome_, {});
+  } else if (!state.local_position_ok) {
+    reason_ += "; without a position there is no HOLD, the failsafe has the vehicle";
+    finish(pending_outcome_, {});
+  } else if (exhausted(now)) {
+    reason_ +=
+        "; HOLD was not to be had" + (refusal_.empty() ? "" : " (" + refusal_ + ")") + ", the failsafe has the vehicle";
+    finish(pending_outcome_, {});
+  } else {
+    return {Motion::kNone, ask(Command::kHold, now)};
+  }
+  return {};
+}
+
 Decision Supervisor::hand_over(double now, const VehicleState& state) {
+  if (rescue_) return rescue(now, state);
   const bool offboard = state.mode == FlightMode::kOffboard;
+  const bool landing = landing_interrupted_ && state.mode == FlightMode::kLand;
   const bool grounded = !state.armed && !state.in_air;
-  const Motion motion = pending_outcome_ == Outcome::kReached ? Motion::kFollow : Motion::kBrake;
+  const Motion motion = landing                                 ? Motion::kNone
+                        : pending_outcome_ == Outcome::kReached ? Motion::kFollow
+                                                                : Motion::kBrake;
   // Stopped while OFFBOARD or arming was asked for: whether that acted, only a newer heartbeat tells.
   if (state.heartbeat_stamp <= unsettled_until_ && (offboard ? grounded : !offboard_seen_)) {
     if (now - entered_ <= kHeartbeatTimeout) return {motion, {}};
@@ -297,7 +408,7 @@ Decision Supervisor::hand_over(double now, const VehicleState& state) {
     return {};
   }
   // HOLD is there; or somebody chose another mode, and that stands.
-  if (!offboard || grounded) {
+  if ((!offboard && !landing) || grounded) {
     finish(pending_outcome_, {});
     return {};
   }
@@ -312,28 +423,31 @@ Decision Supervisor::hand_over(double now, const VehicleState& state) {
 
 Decision Supervisor::land(double now, const VehicleState& state) {
   if (!state.armed && !state.in_air) {
-    finish(Outcome::kReached, {});
+    finish(pending_outcome_, {});
     return {};
   }
+  const auto fail = [&](const std::string& what) {
+    reason_ += ", but " + what;
+    pending_outcome_ = Outcome::kAborted;
+  };
   if (state.mode != FlightMode::kOffboard && state.mode != FlightMode::kLand) {
-    reason_ = "target reached, but the landing was taken over: mode " + std::string(to_string(state.mode));
-    finish(Outcome::kAborted, {});
+    fail("the landing was taken over: mode " + std::string(to_string(state.mode)));
+    finish(pending_outcome_, {});
     return {};
   }
   if (state.mode == FlightMode::kLand) {
     if (now - entered_ > kLandingTimeout) {
-      reason_ = "target reached, but the landing did not end";
-      finish(Outcome::kAborted, {});
+      fail("the landing did not end");
+      finish(pending_outcome_, {});
     }
     return {};
   }
   if (exhausted(now)) {
-    pending_outcome_ = Outcome::kAborted;
-    reason_ = "target reached, but the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_);
+    fail("the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_));
     enter(Phase::kHandover, now);
     return {Motion::kBrake, ask(Command::kHold, now)};
   }
-  return {Motion::kFollow, ask(Command::kLand, now)};
+  return {land_ ? Motion::kBrake : Motion::kFollow, ask(Command::kLand, now)};
 }
 
 }  // namespace jink::bridge

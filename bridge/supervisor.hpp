@@ -33,9 +33,9 @@ enum class MissingPeer { kNone, kAutopilot, kTracks };
 struct SupervisorSettings {
   double peer_timeout = 30.0;    ///< for the autopilot's first words and the first tracks
   double health_timeout = 60.0;  ///< from then on, for it to become armable
-  double stale_state = 0.5;      ///< age of the position at which to brake
-  double stale_plan = 0.5;       ///< age of the newest plan at which to brake
-  double give_up = 3.0;          ///< braking for so long ends the flight in HOLD
+  double stale_state = 0.2;      ///< age of the position at which to brake
+  double stale_plan = 0.3;       ///< age of the newest plan at which to brake
+  double give_up = 3.0;          ///< braking for so long at a stretch, or twice that in pieces, ends the flight in HOLD
 };
 
 /// What the companion knows besides the vehicle's state.
@@ -57,7 +57,9 @@ struct Decision {
 
 /// Arms only where the autopilot says it is ready and never by force. Confirms arming and modes by the heartbeat, not
 /// by an acknowledgement; asks again where nothing happened, a few times. Any mode change that was not asked for ends
-/// the flight and the stream at once: a pilot's word is the last one.
+/// the flight and the stream at once: a pilot's word is the last one. A failsafe of the autopilot is another matter: it
+/// may pass when the setpoints arrive again, so it counts as a hazard first; where it stays, LAND, RETURN and HOLD are
+/// left to it, and where it only sinks, HOLD is asked for, without setpoints, which would take it back to OFFBOARD.
 class Supervisor {
  public:
   Supervisor(const config::Mission& mission, const SupervisorSettings& settings)
@@ -90,11 +92,15 @@ class Supervisor {
   Decision fly(double now, const VehicleState& state, const FlightPicture& picture);
   Decision hand_over(double now, const VehicleState& state);
   Decision land(double now, const VehicleState& state);
+  Decision rescue(double now, const VehicleState& state);
   Decision fall_back(double now);
+  void flee_battery(double now, const VehicleState& state);
   [[nodiscard]] bool exhausted(double now) const;
   void find_missing(double now, const VehicleState& state, const FlightPicture& picture);
   void find_hazard(double now, const VehicleState& state, const FlightPicture& picture);
-  bool taken_over(const VehicleState& state);
+  bool taken_over(double now, const VehicleState& state);
+  bool failsafe_took_over(double now, const VehicleState& state);
+  bool outside_fence(const VehicleState& state);
 
   config::Mission mission_;
   SupervisorSettings settings_;
@@ -103,6 +109,12 @@ class Supervisor {
   double began_ = -1.0;    // the first update
   double flight_began_ = -1.0;
   double hazard_since_ = -1.0;
+  double hazard_time_ = 0.0;      // s, spent in hazards; forgotten at a third of the rate
+  double updated_ = -1.0;         // the last update
+  double failsafe_since_ = -1.0;  // of the autopilot
+  bool rescue_ = false;           // out of a failsafe that sinks: HOLD without setpoints
+  bool land_ = false;             // the stop ends in a landing, not in HOLD
+  bool landing_interrupted_ = false;
   double asked_ = -1.0;  // the newest request
   std::optional<Command> asked_for_;
   int tries_ = 0;

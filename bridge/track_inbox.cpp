@@ -57,6 +57,12 @@ void TrackInbox::put(TrackMessage message, const std::string& why) {
   status_.dropped_tracks += message.dropped;
   if (!why.empty()) status_.last_refusal = why;
   queue_.push_back(std::move(message));
+  if (wake_ != nullptr) wake_->notify();
+}
+
+void TrackInbox::notify(Wake& wake) {
+  const std::scoped_lock lock(mutex_);
+  wake_ = &wake;
 }
 
 void TrackInbox::refuse_frame(const std::string& why) {

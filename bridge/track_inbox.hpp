@@ -53,6 +53,8 @@ class TrackInbox {
   void refuse_frame(const std::string& why);
 
   bool poll(TrackMessage& message);
+  /// Notified from now on by each message; outlives the inbox.
+  void notify(Wake& wake);
   /// `writers` is left at 0: the transport knows.
   [[nodiscard]] TrackSourceStatus status() const;
   /// Messages thrown away unread because nobody polled.
@@ -63,6 +65,7 @@ class TrackInbox {
   std::deque<TrackMessage> queue_;
   TrackSourceStatus status_;
   std::uint64_t overruns_ = 0;
+  Wake* wake_ = nullptr;
 };
 
 }  // namespace jink::bridge

@@ -2,73 +2,144 @@
 #include "bridge/track_table.hpp"
 
 #include <algorithm>
-#include <set>
+#include <unordered_set>
 
 #include "planner/obstacle_motion.hpp"
 
 namespace jink::bridge {
 namespace {
 
-constexpr double kStampRate =
-    0.1;  // s of stamp for each second of reception, below which a writer's stamps stand still
+using planner::Vec3;
+
+constexpr double kMoving = 0.05;     // m/s, above which a track that stands is not a new measurement
+constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velocity, at most, of its own track
+constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
+constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
+constexpr double kSelfLeaves = 2.0;  // times the distance that makes a track its own, at which it no longer is
+
+// What a track may be, about what an outdoor flight meets.
+constexpr double kFastest = 1000.0;  // m/s
+constexpr double kHardest = 1000.0;  // m/s²
+constexpr double kBiggest = 1000.0;  // m, radius
+constexpr double kVaguest = 1000.0;  // m, m/s: standard deviations
+
+// The first of its id keeps it, later ones get the next that is free.
+void make_ids_unique(std::vector<planner::Track>& tracks) {
+  std::unordered_set<std::uint64_t> used;
+  used.reserve(tracks.size());
+  for (planner::Track& track : tracks) {
+    while (!used.insert(track.id).second) ++track.id;
+  }
+}
 
 }  // namespace
 
+bool plausible(const planner::Track& track) {  // each comparison is false for NaN
+  return track.position.norm() <= TrackTable::kFarthest && track.velocity.norm() <= kFastest &&
+         track.acceleration.norm() <= kHardest && track.radius > 0.0 && track.radius <= kBiggest &&
+         track.position_sigma >= 0.0 && track.position_sigma <= kVaguest && track.velocity_sigma >= 0.0 &&
+         track.velocity_sigma <= kVaguest;
+}
+
 // How old the message's measurement was at reception; nothing where it is too old to say anything of the present.
 std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
-  const double age = message.stamp_age;
-  const double stamp = message.received - age;  // to within a constant
-  const auto [known, first] = writers_.try_emplace(message.writer);
-  Writer& writer = known->second;
-  const bool advanced = !first && stamp - writer.stamp > kStampRate * (message.received - writer.received);
-  writer.advances = writer.advances || advanced;
-  writer.smallest_age = first ? age : std::min(writer.smallest_age, age);
-  writer.stamp = stamp;
+  Writer& writer = writers_[message.writer];
   writer.received = message.received;
-  if (!first && !writer.advances) {  // it does not stamp at all
-    ++clock_offsets_;
-    return 0.0;
+  const std::optional<double> delay = writer.clock.delay(message.received, message.stamp_age);
+  if (delay && writer.clock.off()) ++counts_.clock_offsets;
+  return delay;
+}
+
+// What moves has not moved. Nothing where nothing moves.
+bool TrackTable::is_repetition(const TrackMessage& message) const {
+  bool any = false;
+  for (const planner::Track& track : message.tracks) {
+    if (!(track.velocity.norm() > kMoving)) continue;
+    const auto known = entries_.find({message.writer, track.id});
+    if (known == entries_.end() || known->second.track.position != track.position) return false;
+    any = true;
   }
-  if (age - writer.smallest_age > kLongestDelay) {
-    if (writer.late_since < 0.0) writer.late_since = message.received;
-    // Held up on the way, or the same old measurement again. Only where it goes on so and new ones come was a clock
-    // set.
-    if (!advanced || message.received - writer.late_since <= kLongestDelay) return std::nullopt;
-    writer.smallest_age = age;
-  }
-  writer.late_since = -1.0;
-  if (writer.smallest_age >= 0.0 && writer.smallest_age <= kLongestDelay) return std::min(age, kLongestDelay);
-  ++clock_offsets_;
-  return std::min(age - writer.smallest_age, kLongestDelay);
+  return any;
 }
 
 void TrackTable::ingest(const TrackMessage& message) {
   const std::optional<double> delay = delay_of(message);
   if (!delay) {
-    ++late_messages_;
+    ++counts_.late_messages;
+    return;
+  }
+  if (is_repetition(message)) {
+    ++counts_.frozen_messages;
     return;
   }
   const double measured = message.received - *delay;
-  newest_message_ = std::max(newest_message_, message.received);
+  if (message.watches) newest_message_ = std::max(newest_message_, message.received);
+  writers_[message.writer].believed = message.received;
   for (const planner::Track& track : message.tracks) {
-    Entry& entry = entries_[{message.writer, track.id}];
+    if (!plausible(track)) {
+      ++counts_.invalid_tracks;
+      continue;
+    }
+    const Key key{message.writer, track.id};
+    auto known = entries_.find(key);
+    if (known == entries_.end()) {
+      if (entries_.size() >= kMost) forget(message.received);
+      if (entries_.size() >= kMost) {
+        ++counts_.surplus_tracks;
+        continue;
+      }
+      known = entries_.emplace(key, Entry{}).first;
+    }
+    Entry& entry = known->second;
     if (entry.seen > 0.0 && measured < entry.measured) continue;  // overtaken on the way
-    entry = {track, measured, message.received};
+    entry.track = track;
+    entry.measured = measured;
+    entry.seen = message.received;
   }
 }
 
-std::vector<planner::Track> TrackTable::predict(double now, double trust) {
+void TrackTable::forget(double now) {
   std::erase_if(entries_, [&](const auto& item) { return now - item.second.seen > coast_s_; });
+  std::erase_if(writers_, [&](const auto& item) { return now - item.second.received > kForgetWriter; });
+}
+
+void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocity, double radius) {
+  own_tracks_ = 0;
+  for (auto& [key, entry] : entries_) {
+    const double age = std::max(0.0, now - entry.measured);
+    const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
+    const double near = (radius + doubt) * (entry.is_self ? kSelfLeaves : 1.0);
+    const bool here = (entry.track.position + age * entry.track.velocity - position).norm() < near &&
+                      (entry.track.velocity - velocity).norm() < kSelfSpeed;
+    if (!here) {
+      entry.self_since = -1.0;
+    } else if (entry.self_since < 0.0) {
+      entry.self_since = now;
+    }
+    entry.is_self = here && now - entry.self_since >= kSelfTime;
+    own_tracks_ += entry.is_self ? 1 : 0;
+  }
+}
+
+int TrackTable::silent_writers(double now, double timeout_s) const {
+  return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
+    const double silence = now - item.second.believed;
+    return item.second.believed >= 0.0 && silence > timeout_s && silence <= kForgetWriter;
+  }));
+}
+
+std::vector<planner::Track> TrackTable::predict(double now, double trust) {
+  forget(now);
   std::vector<planner::Track> tracks;
   tracks.reserve(entries_.size());
-  std::set<std::uint64_t> used;
   for (const auto& [key, entry] : entries_) {
+    if (entry.is_self) continue;
     const double age = std::max(0.0, now - entry.measured);
     planner::Track track = planner::predict(entry.track, age, trust);
     track.age = age;
-    while (!used.insert(track.id).second) ++track.id;
     tracks.push_back(track);
   }
+  if (writers_.size() > 1) make_ids_unique(tracks);
   return tracks;
 }
 

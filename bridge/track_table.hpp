@@ -2,16 +2,31 @@
 // What is around now: the newest of every writer's tracks, predicted to the present, coasting when they go missing.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "bridge/stamp_clock.hpp"
 #include "bridge/track_source.hpp"
 #include "planner/types.hpp"
 
 namespace jink::bridge {
+
+/// What the table left out or corrected since the start; for events and summaries.
+struct TrackTableCounts {
+  std::uint64_t clock_offsets = 0;    ///< messages whose stamp could not be believed
+  std::uint64_t late_messages = 0;    ///< messages left out because they came too late
+  std::uint64_t frozen_messages = 0;  ///< messages left out because what moves had not moved since the one before
+  std::uint64_t invalid_tracks = 0;   ///< tracks left out: a number that is none, or beyond kFarthest and the like
+  std::uint64_t surplus_tracks = 0;   ///< tracks left out because the table was full
+};
+
+/// Whether a track's numbers are finite and of a size that an obstacle can have. The last check before the planner, for
+/// every source.
+[[nodiscard]] bool plausible(const planner::Track& track);
 
 /// Tracks of several writers, each with its own identities; nothing is fused, so an obstacle that two writers see is
 /// avoided twice. Not thread-safe.
@@ -20,49 +35,59 @@ class TrackTable {
   /// `coast_s`: how long a track lives on after the last message that held it.
   explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
 
-  /// Takes in one message. The measurement's instant is the reception less the delay read from the stamp. A stamp that
-  /// lies in the future or more than kLongestDelay back tells of a clock that is off: then the writer's smallest stamp
-  /// age so far stands for the offset and what exceeds it for the delay. A message whose delay exceeds kLongestDelay is
-  /// left out, as if it had not come; where that lasts for kLongestDelay with stamps that advance, a clock was set and
-  /// its offset is learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
+  /// Takes in one message. The measurement's instant is the reception less the delay that the writer's StampClock
+  /// believes; a message that is too late for it is left out, as if it had not come.
+  ///
+  /// A message in which every track that should have moved stands where it stood in the one before, to the last bit, is
+  /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
   void ingest(const TrackMessage& message);
+
+  /// Finds tracks that are the vehicle itself, as a tracker reports them that sees it too: within `radius` of
+  /// `position` at nearly its velocity for kSelfTime. predict() leaves them out for as long as they stay there: an
+  /// obstacle with its centre inside the vehicle would have hit it. To be called when messages came in.
+  void find_self(double now, const planner::Vec3& position, const planner::Vec3& velocity, double radius);
 
   /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
   /// Their age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use
   /// the same.
   std::vector<planner::Track> predict(double now, double trust);
 
-  /// Reception of the newest message of any writer; negative: none yet.
+  /// Reception of the newest message of any writer that watches; negative: none yet.
   [[nodiscard]] double newest_message() const { return newest_message_; }
-  /// Messages whose stamp could not be believed.
-  [[nodiscard]] std::uint64_t clock_offsets() const { return clock_offsets_; }
+  [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
+  /// Living tracks that are taken for the vehicle itself.
+  [[nodiscard]] int own_tracks() const { return own_tracks_; }
+  /// Writers whose last believed message came between `timeout_s` and kForgetWriter before `now`.
+  [[nodiscard]] int silent_writers(double now, double timeout_s) const;
 
-  /// Messages left out because they came too late.
-  [[nodiscard]] std::uint64_t late_messages() const { return late_messages_; }
-
-  static constexpr double kLongestDelay = 1.0;  ///< s, from measurement to reception
+  static constexpr std::size_t kMost = 20000;    ///< living tracks
+  static constexpr double kFarthest = 1e5;       ///< m from the origin
+  static constexpr double kSelfTime = 0.2;       ///< s
+  static constexpr double kForgetWriter = 60.0;  ///< s of silence, after which a writer is taken for ended
 
  private:
   struct Entry {
-    planner::Track track;   // as measured
-    double measured = 0.0;  // companion's clock
-    double seen = 0.0;      // reception of the last message that held it
+    planner::Track track;      // as measured
+    double measured = 0.0;     // companion's clock
+    double seen = 0.0;         // reception of the last message that held it
+    double self_since = -1.0;  // where the vehicle is; negative: it is elsewhere
+    bool is_self = false;
   };
   struct Writer {
-    double smallest_age = 0.0;  // of its stamps
-    double stamp = 0.0;         // the newest message's, to within a constant
+    StampClock clock;
     double received = 0.0;
-    double late_since = -1.0;
-    bool advances = false;
+    double believed = -1.0;  // reception of the newest message that was taken in
   };
   std::optional<double> delay_of(const TrackMessage& message);
+  [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
+  void forget(double now);
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
 
   double coast_s_;
   double newest_message_ = -1.0;
-  std::uint64_t clock_offsets_ = 0;
-  std::uint64_t late_messages_ = 0;
+  TrackTableCounts counts_;
+  int own_tracks_ = 0;
   std::map<std::uint64_t, Writer> writers_;
   std::map<Key, Entry> entries_;
 };

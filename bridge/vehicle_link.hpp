@@ -55,6 +55,7 @@ struct VehicleState {
   BatteryState battery = BatteryState::kUnknown;
   std::optional<Geodetic> origin;  ///< of the local frame; none: not told yet
   std::uint32_t system_id = 0;     ///< MAVLink system of the autopilot; 0: not found yet
+  std::uint32_t reboots = 0;       ///< times that the autopilot began anew; its local frame may be another since
 };
 
 /// What the vehicle is asked to follow: position with velocity and acceleration feed-forward, and a heading.

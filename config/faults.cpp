@@ -165,7 +165,8 @@ std::string Fault::text() const {
     if (key == "count") say(key, count);
     if (key == "offset") say(key, offset);
     if (key == "remaining") say(key, remaining);
-    if (key == "by") text += ", by [" + number_text(by.x()) + ", " + number_text(by.y()) + ", " + number_text(by.z()) + "]";
+    if (key == "by")
+      text += ", by [" + number_text(by.x()) + ", " + number_text(by.y()) + ", " + number_text(by.z()) + "]";
     if (key == "mode") text += ", " + std::string(kModes.at(static_cast<std::size_t>(mode)));
     if (key == "direction" && direction != LinkDirection::kBoth)
       text += ", " + std::string(kDirections.at(static_cast<std::size_t>(direction)));

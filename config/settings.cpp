@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/settings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <variant>
@@ -99,6 +100,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
 constexpr Field<CompanionSettings> kCompanion[] = {
     {"setpoint_rate_hz", &CompanionSettings::setpoint_rate_hz, closed(2, 1000)},  // below 2 Hz PX4 leaves OFFBOARD
     {"replan_rate_hz", &CompanionSettings::replan_rate_hz, above(0, 1000)},
+    {"largest_replan_rate_hz", &CompanionSettings::largest_replan_rate_hz, above(0, 1000)},
     {"planner_latency_ms", &CompanionSettings::planner_latency_ms, closed(0, 10000)},
     {"commitment", &CompanionSettings::commitment, closed(0, 5)},
     {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},
@@ -106,6 +108,7 @@ constexpr Field<CompanionSettings> kCompanion[] = {
     {"drag", &CompanionSettings::drag, closed(0, 5)},
     {"stale_state", &CompanionSettings::stale_state, above(0, 60)},
     {"stale_plan", &CompanionSettings::stale_plan, above(0, 60)},
+    {"margin_limit", &CompanionSettings::margin_limit, closed(0, 10)},
 };
 
 std::string path_of(std::string_view section, std::string_view key) {
@@ -232,6 +235,8 @@ struct Override {
     path = argument.substr(0, equals);
     text = argument.substr(equals + 1);
   }
+  Override(std::string place, const SettingText& setting)
+      : source(std::move(place)), path(setting.key), text(setting.value) {}
   [[nodiscard]] Value value() const { return {YAML::Node(text), source, path, 0}; }
 };
 
@@ -253,27 +258,45 @@ void apply(const Override& change, Settings& settings) {
                     (near.empty() ? "allowed: " + join(known) : "did you mean '" + std::string(near) + "'?"));
 }
 
+/// In order. What is wrong between keys is looked for after the last one, so that two that belong together may come in
+/// any order.
+void apply_all(const std::vector<Override>& changes, Settings& settings) {
+  for (const Override& change : changes) apply(change, settings);
+  const auto conflict = find_conflict(settings);
+  if (!conflict) return;
+  const std::string path(conflict->path);
+  const std::string section = path.substr(0, path.find('.') + 1);
+  std::string sources;
+  for (const Override& change : changes) {
+    if (!change.path.starts_with(section) || sources.ends_with(change.source)) continue;
+    sources += (sources.empty() ? "" : " ") + change.source;
+  }
+  for (const SettingText& setting : list_settings(settings)) {
+    if (setting.key == path) Value(YAML::Node(setting.value), sources, path, 0).fail(conflict->complaint);
+  }
+}
+
 }  // namespace
 
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Settings settings = read_file(file);
   std::vector<Override> changes;
-  for (const std::string& argument : overrides) {
-    changes.emplace_back(argument);
-    apply(changes.back(), settings);
+  for (const std::string& argument : overrides) changes.emplace_back(argument);
+  apply_all(changes, settings);
+  return settings;
+}
+
+Settings recorded_settings(const std::string& source, const std::vector<SettingText>& values,
+                           const std::vector<std::string>& overrides, std::vector<std::string>& missing) {
+  Settings settings;
+  for (const SettingText& setting : list_settings(settings)) {
+    const bool known = std::any_of(values.begin(), values.end(), [&](const auto& v) { return v.key == setting.key; });
+    if (!known) missing.push_back(setting.key);
   }
-  // Checked after the last one, so that two overrides that belong together may come in any order.
-  if (const auto conflict = find_conflict(settings)) {
-    const std::string path(conflict->path);
-    const std::string section = path.substr(0, path.find('.') + 1);
-    std::string sources;
-    for (const Override& change : changes) {
-      if (change.path.starts_with(section)) sources += (sources.empty() ? "" : " ") + change.source;
-    }
-    for (const SettingText& setting : list_settings(settings)) {
-      if (setting.key == path) Value(YAML::Node(setting.value), sources, path, 0).fail(conflict->complaint);
-    }
-  }
+  std::vector<Override> changes;
+  for (const SettingText& value : values) changes.emplace_back(source, value);
+  for (const std::string& argument : overrides) changes.emplace_back(argument);
+  apply_all(changes, settings);
   return settings;
 }
 

@@ -13,15 +13,17 @@ namespace jink::config {
 /// The loop around the planner: rates and what virtual time assumes.
 struct CompanionSettings {
   double setpoint_rate_hz = 50.0;
-  double replan_rate_hz = 10.0;
-  double planner_latency_ms = 20.0;  ///< in virtual time: from a plan's start to its use
+  double replan_rate_hz = 10.0;          ///< at least, also where no new tracks come
+  double largest_replan_rate_hz = 40.0;  ///< at most: a new track message starts a plan at once, but no sooner
+  double planner_latency_ms = 20.0;      ///< in virtual time: from a plan's start to its use
   double commitment = 0.2;      ///< from a plan's beginning to its start at the least: the present plan is flown until
                                 ///< then, since the vehicle answers a new acceleration that late
   double setpoint_lead = 0.04;  ///< how far ahead of now the plan is sampled for position and velocity: the transport
   double acceleration_lead = 0.3;  ///< and for the acceleration: the autopilot's attitude loop and rotors too
-  double drag = 1.0;         ///< 1/s, deceleration per speed that the feed-forward makes up for; PX4's SITL shows 1.0
-  double stale_state = 0.5;  ///< age of the vehicle's position at which to brake
-  double stale_plan = 0.5;   ///< age of the newest plan at which to brake
+  double drag = 1.0;          ///< 1/s, deceleration per speed that the feed-forward makes up for; PX4's SITL shows 1.0
+  double stale_state = 0.2;   ///< age of the vehicle's position at which to brake
+  double stale_plan = 0.3;    ///< age of the newest plan at which to brake
+  double margin_limit = 0.8;  ///< the most that the tracking error measured in flight may make of horizon.margin
 };
 
 struct Settings {
@@ -46,6 +48,12 @@ struct SettingText {
 
 /// Every parameter, in the order of config/planner.yaml; for the header of a flight log and for tests.
 std::vector<SettingText> list_settings(const Settings& settings);
+
+/// Parameters as list_settings() gave them once, in a flight log: the defaults with `values` in their place, then
+/// `overrides` as in load_settings(), checked like a file. Keys that `values` lacks keep their default and are added to
+/// `missing`. Throws ConfigError naming `source` and the key, also for a key that is not known any more.
+Settings recorded_settings(const std::string& source, const std::vector<SettingText>& values,
+                           const std::vector<std::string>& overrides, std::vector<std::string>& missing);
 
 /// Where the project's own files are, planner.yaml, vehicles/, scenarios/ and missions/: the environment variable
 /// JINK_CONFIG_DIR, else the source tree's config folder. The environment is read at each call.

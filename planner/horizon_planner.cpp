@@ -112,13 +112,26 @@ void HorizonPlanner::start_from(const PathProblem& problem, const PathRequest& r
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                           std::uint64_t number, const Budget& budget, WorkerPool& pool) {
+  return make(request, previous, {seed, number}, {budget, budget}, pool);
+}
+
+Plan HorizonPlanner::repeat(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
+                            std::uint64_t number, const std::array<SearchExtent, 2>& searches, WorkerPool& pool) {
+  const auto budget = [](const SearchExtent& s) { return Budget{s.schedule, Budget::Time::max(), s.generations}; };
+  const Budget first = budget(searches[0]);
+  return make(request, previous, {seed, number}, {first, searches[1].schedule > 0 ? budget(searches[1]) : first}, pool);
+}
+
+Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous, const Random& random,
+                          const std::array<Budget, 2>& budgets, WorkerPool& pool) {
   if (!finite(request)) return {};
-  const Random random{seed, number};
-  Plan plan = search(problem_, request, previous, random, budget, pool);
+  Plan plan = search(problem_, request, previous, random, budgets[0], pool);
+  std::array<SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
   if (!previous.empty()) keep_previous(request, previous, plan);
   const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
   if (!safe && settings_.emergency_share > settings_.acceleration_share) {
-    Plan harder = search(emergency_, request, previous, random, budget, pool);
+    Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
+    searches[1] = {harder.schedule, harder.generations};
     plan.evaluations += harder.evaluations;
     if (less_harm(harder.verification, plan.verification)) {
       harder.evaluations = plan.evaluations;
@@ -126,6 +139,7 @@ Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous,
       plan = std::move(harder);
     }
   }
+  plan.searches = searches;
   conclude(request, problem_.horizon(), plan);
   return plan;
 }

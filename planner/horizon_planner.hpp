@@ -2,6 +2,7 @@
 // Horizon mode: what is flown. Plans the remaining path from the present state, verified, again and again.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace jink::planner {
 
 /// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits
 /// for the same request, previous plan, seed and generations, whatever the number of threads. Where a deadline is
-/// given, the plan says how many generations were scheduled and done, and with these the plan can be repeated.
+/// given, the plan says how far its searches went, and repeat() makes it again from that.
 class HorizonPlanner {
  public:
   /// `optimizer` gives the operators; its size (slaves, sharing, population, iterations) is that of `settings`. Throws
@@ -34,6 +35,12 @@ class HorizonPlanner {
   Plan plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
             const Budget& budget, WorkerPool& pool);
 
+  /// Makes a plan again whose searches went as far as `searches` says (Plan::searches): the same bits, though the clock
+  /// had a say in the first one. Where other settings or another request lead to a search that is not among them, it
+  /// goes as far as the first. Throws std::invalid_argument where the first has no generation.
+  Plan repeat(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
+              const std::array<SearchExtent, 2>& searches, WorkerPool& pool);
+
   [[nodiscard]] const HorizonSettings& settings() const { return settings_; }
   /// How far a plan looks ahead, s.
   [[nodiscard]] double horizon() const { return problem_.horizon(); }
@@ -43,6 +50,9 @@ class HorizonPlanner {
   struct Random {
     std::uint64_t seed = 1, stream = 0;
   };
+  /// With one budget for each search.
+  Plan make(const PathRequest& request, const TimedPath& previous, const Random& random,
+            const std::array<Budget, 2>& budgets, WorkerPool& pool);
   Plan search(PathProblem& problem, const PathRequest& request, const TimedPath& previous, const Random& random,
               const Budget& budget, WorkerPool& pool);
   void start_from(const PathProblem& problem, const PathRequest& request, const TimedPath& previous);

@@ -21,13 +21,23 @@ enum class PlanStatus {
 };
 std::string_view to_string(PlanStatus status);
 
+/// How far a search went: the generations that were scheduled, and of these the ones done. 0, 0: it was not made.
+struct SearchExtent {
+  int schedule = 0;
+  int generations = 0;
+  bool operator==(const SearchExtent&) const = default;
+};
+
 struct Plan {
   PlanStatus status = PlanStatus::kInvalid;
   TimedPath path;
   Verification verification;
   std::int64_t evaluations = 0;
-  int schedule = 0;     ///< generations that were scheduled; with `generations` and the seed they repeat the plan
-  int generations = 0;  ///< generations that were done
+  int schedule = 0;     ///< generations that were scheduled in the search that gave the path
+  int generations = 0;  ///< generations that were done in it
+  /// Horizon mode: the search with the acceleration that plans normally use, and the one with more. With these, the
+  /// arguments and the seed the plan can be repeated.
+  std::array<SearchExtent, 2> searches{};
   bool deadline_reached = false;
   bool kept_previous = false;                ///< the plan before was kept
   bool emergency = false;                    ///< more acceleration is used than plans normally may

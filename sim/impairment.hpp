@@ -34,8 +34,8 @@ struct LinkImpairment {
   return kName + 2 * static_cast<std::uint64_t>(system) + static_cast<std::uint64_t>(direction);
 }
 
-/// One direction of a link. Packets that are not reordered keep their order also where the delay shrinks; what is on its
-/// way when the link is lost still arrives. The random numbers depend on (seed, stream, count of packets) alone.
+/// One direction of a link. Packets that are not reordered keep their order also where the delay shrinks; what is on
+/// its way when the link is lost still arrives. The random numbers depend on (seed, stream, count of packets) alone.
 template <class Packet>
 class ImpairedChannel {
  public:

@@ -10,8 +10,8 @@
 
 namespace jink::sim {
 
-/// Wind and estimate of the scenario. The seed is that of the run and the vehicle's number, so that each vehicle's gusts
-/// and errors are its own.
+/// Wind and estimate of the scenario. The seed is that of the run and the vehicle's number, so that each vehicle's
+/// gusts and errors are its own.
 void set_conditions(const config::Scenario& scenario, std::uint64_t seed, int vehicle, AutopilotOptions& options);
 
 /// Does to vehicle `vehicle` what a change of the timeline says, if it befalls it; the timeline has advanced to it.

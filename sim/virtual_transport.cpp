@@ -11,10 +11,10 @@
 namespace jink::sim {
 namespace {
 
-constexpr double kAnswerTimeout = 0.5;   // s, MAVSDK's, after which a command is sent again
-constexpr int kRetries = 3;              // MAVSDK's
-constexpr double kLinkUp = 0.3;          // s after a boot, when the autopilot begins to listen
-constexpr double kFirstHeartbeat = 1.3;  // s after a boot
+constexpr double kAnswerTimeout = 0.5;      // s, MAVSDK's, after which a command is sent again
+constexpr int kRetries = 3;                 // MAVSDK's
+constexpr double kLinkUp = 0.3;             // s after a boot, when the autopilot begins to listen
+constexpr double kFirstHeartbeat = 1.3;     // s after a boot
 constexpr std::uint8_t kStateCritical = 5;  // MAV_STATE
 
 bridge::FlightMode bridge_mode(FlightMode mode) {

@@ -4,13 +4,18 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
 
+#include "bridge/adsb_tracks.hpp"
 #include "bridge/clock.hpp"
 #include "bridge/companion.hpp"
+#include "bridge/dds_autoware.hpp"
 #include "bridge/dds_intents.hpp"
+#include "bridge/dds_px4.hpp"
 #include "bridge/dds_tracks.hpp"
 #include "bridge/mavsdk_link.hpp"
+#include "bridge/track_sources.hpp"
 #include "config/mission.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
@@ -78,21 +83,58 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
       {"parameters", parameters_of(settings)}};
 }
 
-/// Turns the loop at the setpoints' rate until the flight is over; Ctrl-C brakes and hands over to HOLD.
-void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz) {
-  const auto begun = std::chrono::steady_clock::now();
+/// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
+/// Ctrl-C brakes and hands over to HOLD.
+void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz, bridge::Wake& wake) {
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
-  auto next = begun;
+  auto next = std::chrono::steady_clock::now() + period;
   while (companion.step(clock.now())) {
     if (interrupted()) companion.interrupt(clock.now());
-    next += period;
+    wake.wait_until(next);
     // A turn that came late is not made up for: setpoints in a burst say nothing.
     const auto now = std::chrono::steady_clock::now();
-    if (next < now) next = now;
-    std::this_thread::sleep_until(next);
+    if (next <= now) next = std::max(next + period, now);
   }
 }
+
+/// All that a mission's flight talks to but the autopilot's MAVLink.
+struct Transports {
+  Transports(const config::Mission& mission, bridge::MavsdkLink& mavlink, const bridge::Clock& clock)
+      : node(mission.dds_domain), vehicle(&mavlink) {
+    const config::TrackSources& sources = mission.tracks.sources;
+    if (sources.jink) tracks.add(jink.emplace(node, clock));
+    if (sources.autoware) tracks.add(autoware.emplace(node, clock));
+    if (sources.adsb) {
+      const auto reports = [&mavlink](bridge::AdsbReport& report) { return mavlink.next_adsb(report); };
+      const auto origin = [&mavlink] { return mavlink.state().origin; };
+      tracks.add(adsb.emplace(reports, origin, clock));
+    }
+    const bool state = mission.state == config::Transport::kDds;
+    const bool setpoints = mission.setpoints == config::Transport::kDds;
+    if (state || setpoints) {
+      const bridge::DdsVehicleOptions options{state, setpoints, mission.dds_namespace};
+      vehicle = &dds_vehicle.emplace(mavlink, node, clock, options);
+    }
+    if (mission.intents) intents.emplace(node, clock);
+  }
+  Transports(const Transports&) = delete;
+  Transports& operator=(const Transports&) = delete;
+
+  bridge::CompanionParts parts(bridge::PlannerTask& planner, const std::vector<bridge::FlightObserver*>& observers,
+                               const bridge::Clock& clock) {
+    return {*vehicle, tracks, planner, observers, &clock, intents ? &*intents : nullptr};
+  }
+
+  bridge::DdsNode node;
+  std::optional<bridge::DdsTrackReader> jink;
+  std::optional<bridge::DdsAutowareReader> autoware;
+  std::optional<bridge::AdsbTracks> adsb;
+  bridge::TrackSources tracks;
+  bridge::VehicleLink* vehicle;
+  std::optional<bridge::DdsVehicleLink> dds_vehicle;
+  std::optional<bridge::DdsIntents> intents;
+};
 
 int exit_code(const bridge::FlightSummary& flight) {
   if (flight.missing_peer != bridge::MissingPeer::kNone) return kExitMissingPeer;
@@ -105,6 +147,7 @@ int run(const FlyOptions& options) {
   const config::Mission mission = config::load_mission(options.mission);
   catch_signals();
   const bridge::SteadyClock clock;
+  bridge::Wake wake;
   Teller teller(mission, printer);
   std::vector<bridge::FlightObserver*> observers{&teller};
   std::unique_ptr<FlightLog> log;
@@ -120,17 +163,15 @@ int run(const FlyOptions& options) {
     while (!stop.stop_requested() && !link->wait_for_autopilot(1.0, stop)) {
     }
   });
-  bridge::DdsNode node(mission.dds_domain);
-  bridge::DdsTrackReader tracks(node, clock);
-  std::unique_ptr<bridge::DdsIntents> intents;
-  if (mission.intents) intents = std::make_unique<bridge::DdsIntents>(node, clock);
+  Transports transports(mission, *link, clock);
   bridge::ThreadedPlanner planner(
-      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock);
-  bridge::Companion companion(mission, settings, {*link, tracks, planner, observers, intents.get()});
+      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &wake);
+  transports.tracks.notify(wake);
+  bridge::Companion companion(mission, settings, transports.parts(planner, observers, clock));
   printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
                            mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
                            mission.dds_domain, options.common.seed));
-  run_loop(companion, clock, settings.companion.setpoint_rate_hz);
+  run_loop(companion, clock, settings.companion.setpoint_rate_hz, wake);
 
   if (log) log->close();
   const bridge::FlightSummary flight = companion.summary();

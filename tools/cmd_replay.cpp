@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink replay: a scenario flown closed loop in virtual time, in one process.
+// jink replay: a scenario flown closed loop in virtual time, in one process; or a recorded flight planned again.
 #include <fmt/format.h>
 
 #include <memory>
@@ -8,17 +8,23 @@
 #include "sim/closed_loop.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
+#include "tools/flight_replay.hpp"
 #include "tools/report/report.hpp"
 #include "tools/summaries.hpp"
 
 namespace jink::tools {
 namespace {
 
+constexpr std::size_t kMostShown = 20;     // differences that are listed
+constexpr std::size_t kLivePlans = 25;     // between live lines
+constexpr std::size_t kNamedMissing = 10;  // parameters that are named
+
 struct ReplayOptions {
   CommonOptions common;
   std::string scenario;
   std::string log;
   std::string report;
+  bool own_seed = false;  ///< --seed was given
 };
 
 /// The faults to the terminal as they begin and end.
@@ -33,12 +39,9 @@ class FaultPrinter final : public bridge::FlightObserver {
   const Printer& printer_;
 };
 
-int run(const ReplayOptions& options) {
+int replay_scenario(const ReplayOptions& options) {
   const Printer printer(options.common.json == "-");
   const config::Settings settings = options.common.settings();
-  if (std::filesystem::path(options.scenario).extension() == ".jsonl") {
-    throw UsageError(options.scenario + ": replaying a flight log is not built yet; give a scenario file (.yaml)");
-  }
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
@@ -55,7 +58,10 @@ int run(const ReplayOptions& options) {
   loop.flight_observers.push_back(&faults);
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
-    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
+    FlightLogOptions in_virtual_time;
+    in_virtual_time.wait = true;
+    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings),
+                                      in_virtual_time);
     loop.flight_observers.push_back(log.get());
     loop.truth_observers.push_back(log.get());
   }
@@ -74,17 +80,119 @@ int run(const ReplayOptions& options) {
   return result.flight.outcome == bridge::Outcome::kReached ? kExitReached : kExitFailed;
 }
 
+/// The log's parameters, unless told otherwise; what is not the log's own is said.
+ReplaySettings replay_settings(const ReplayOptions& options, const FlightRecording& flight, const Printer& printer) {
+  std::vector<std::string> missing, ignored;
+  ReplaySettings result;
+  result.recorded = config::recorded_settings(flight.source(), flight.parameters(), {}, missing);
+  result.settings = options.common.config.empty() ? config::recorded_settings(flight.source(), flight.parameters(),
+                                                                              options.common.overrides, ignored)
+                                                  : options.common.settings();
+  result.seed = options.own_seed ? options.common.seed : flight.seed();
+  result.threads = options.common.thread_count();
+  if (flight.version() != JINK_VERSION)
+    printer.line(fmt::format("the log is of jink {}, this is jink {}: differences may come from that", flight.version(),
+                             JINK_VERSION));
+  if (!missing.empty()) {
+    const std::size_t named = std::min(missing.size(), kNamedMissing);
+    printer.line(fmt::format("the log does not tell {} parameter{}, which {} today's default: {}{}", missing.size(),
+                             missing.size() == 1 ? "" : "s", missing.size() == 1 ? "has" : "have",
+                             fmt::join(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                             named < missing.size() ? ", ..." : ""));
+  }
+  if (options.own_seed || !options.common.config.empty() || !options.common.overrides.empty())
+    printer.line("other parameters than the log's: differences are what they lead to");
+  return result;
+}
+
+nlohmann::ordered_json comparison_json(const FlightRecording& flight, const FlightComparison& comparison) {
+  nlohmann::ordered_json differences = nlohmann::ordered_json::array();
+  for (const PlanDifference& d : comparison.differences) {
+    differences.push_back({{"t", d.t},
+                           {"number", d.number},
+                           {"line", d.line},
+                           {"recorded", planner::to_string(d.recorded)},
+                           {"now", planner::to_string(d.now)},
+                           {"max_distance", d.max_distance ? finite_or_null(*d.max_distance) : nullptr}});
+  }
+  return {{"format", "jink-flight-replay/1"},
+          {"flight", flight.name()},
+          {"seed", flight.seed()},
+          {"version", flight.version()},
+          {"plans", comparison.plans},
+          {"differ", comparison.differences.size()},
+          {"differences", std::move(differences)},
+          {"ignored_records", flight.unknown() + flight.without_inputs() + (flight.cut_off() ? 1U : 0U)}};
+}
+
+void describe(const FlightRecording& flight, const FlightComparison& comparison, const Printer& printer) {
+  for (std::size_t i = 0; i < std::min(kMostShown, comparison.differences.size()); ++i) {
+    const PlanDifference& d = comparison.differences[i];
+    printer.line(
+        fmt::format("  t {:.2f} s, plan {}: recorded {}, now {}, paths {} apart", d.t, d.number,
+                    planner::to_string(d.recorded), planner::to_string(d.now),
+                    d.max_distance ? fmt::format("{:.3g} m", *d.max_distance) : "not comparable, one is empty"));
+  }
+  if (comparison.differences.size() > kMostShown)
+    printer.line(fmt::format("  ... and {} more", comparison.differences.size() - kMostShown));
+  if (flight.cut_off())
+    printer.line("the log's last line is cut off: its writer was killed; the lines before it count");
+  if (flight.without_inputs() > 0)
+    printer.line(
+        fmt::format("{} plans have no record of what they were made from and were left out", flight.without_inputs()));
+  printer.line(fmt::format("{}: {} plans, {} differ", flight.name(), comparison.plans, comparison.differences.size()));
+}
+
+int replay_flight(const ReplayOptions& options) {
+  const Printer printer(options.common.json == "-");
+  if (!options.log.empty() || !options.report.empty())
+    throw UsageError(std::string(options.log.empty() ? "--report" : "--log") +
+                     ": a replayed log writes none; `jink report FLIGHT.jsonl` makes a report of it");
+  std::optional<FlightRecording> flight;
+  FlightComparison comparison;
+  try {
+    flight.emplace(options.scenario);
+    const ReplaySettings settings = replay_settings(options, *flight, printer);
+    comparison = compare_plans(*flight, settings, [&](std::size_t plans) {
+      if (plans % kLivePlans == 0) printer.live(fmt::format("{} plans made again", plans));
+    });
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+  if (comparison.plans == 0) {
+    throw UsageError(options.scenario +
+                     (flight->without_inputs() > 0
+                          ? ": its " + std::to_string(flight->without_inputs()) +
+                                " plans have no record of what they were made from (written by an older jink)"
+                          : std::string(": holds no plans; logs of `jink replay` and `jink fly` do")));
+  }
+  write_json(options.common.json, comparison_json(*flight, comparison));
+  describe(*flight, comparison, printer);
+  return comparison.differences.empty() ? kExitReached : kExitFailed;
+}
+
+int run(const ReplayOptions& options) {
+  return std::filesystem::path(options.scenario).extension() == ".jsonl" ? replay_flight(options)
+                                                                         : replay_scenario(options);
+}
+
 }  // namespace
 
 Subcommand add_replay(CLI::App& jink) {
   CLI::App* app = jink.add_subcommand(
-      "replay", "fly a scenario closed loop in virtual time: bit-identical for the same seed, at any thread count");
+      "replay",
+      "fly a scenario closed loop in virtual time: bit-identical for the same seed, at any thread count; or, given a\n"
+      "flight log, make its plans again from what they were made from and say which differ");
   const auto options = std::make_shared<ReplayOptions>();
-  app->add_option("SCENARIO", options->scenario, "scenario file")->required();
+  app->add_option("SCENARIO|FLIGHT.jsonl", options->scenario, "scenario file, or flight log of `replay` or `fly`")
+      ->required();
   app->add_option("--log", options->log, "write a flight log (JSON Lines)");
   app->add_option("--report", options->report, "write an HTML flight report; needs --log");
   options->common.add_to(*app);
-  return {app, [options] { return run(*options); }};
+  return {app, [options, app] {
+            options->own_seed = app->count("--seed") > 0;
+            return run(*options);
+          }};
 }
 
 }  // namespace jink::tools

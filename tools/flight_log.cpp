@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/flight_log.hpp"
 
+#include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "tools/command_line.hpp"
 
@@ -13,87 +15,218 @@ Json vector_json(const planner::Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-FlightLog::FlightLog(const std::filesystem::path& file, Json header) : file_(file), out_(file) {
+FlightLog::FlightLog(const std::filesystem::path& file, Json header, const FlightLogOptions& options)
+    : file_(file), options_(options), out_(file) {
   if (!out_) throw UsageError("--log: '" + file.string() + "' cannot be written");
   Json first{{"type", "header"}, {"format", "jink-log/1"}, {"version", JINK_VERSION}};
   first.update(header);
-  write(first);
+  out_ << first.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
+FlightLog::~FlightLog() = default;  // the thread writes what is queued before it ends
+
 void FlightLog::on_state(double t, const bridge::VehicleState& state) {
-  write({{"type", "state"},
-         {"t", t},
-         {"p", vector_json(state.position)},
-         {"v", vector_json(state.velocity)},
-         {"armed", state.armed},
-         {"mode", bridge::to_string(state.mode)}});
+  put(t, state);
 }
 
 void FlightLog::on_tracks(double t, const std::vector<planner::Track>& tracks) {
-  Json list = Json::array();
-  for (const planner::Track& track : tracks) {
-    list.push_back({{"id", track.id},
-                    {"p", vector_json(track.position)},
-                    {"v", vector_json(track.velocity)},
-                    {"a", vector_json(track.acceleration)},
-                    {"radius", track.radius},
-                    {"position_sigma", track.position_sigma},
-                    {"velocity_sigma", track.velocity_sigma},
-                    {"age", track.age}});
-  }
-  write({{"type", "tracks"}, {"t", t}, {"tracks", std::move(list)}});
+  put(t, tracks, tracks.size() * sizeof(planner::Track));
 }
 
 void FlightLog::on_plan(double t, const bridge::PlanResult& result) {
-  Json path = Json::array();
-  for (const planner::TimedPoint& point : result.plan.path) {
-    path.push_back({result.job.start + point.t, point.position.x(), point.position.y(), point.position.z()});
-  }
-  write({{"type", "plan"},
-         {"t", t},
-         {"path", std::move(path)},
-         {"ms", result.ms},
-         {"status", planner::to_string(result.plan.status)},
-         {"kept", result.plan.kept_previous},
-         {"number", result.job.number},
-         {"generations", result.plan.generations},
-         {"missed", result.missed}});
+  const std::size_t points = result.plan.path.size() + result.job.previous.size();
+  put(t, result, result.job.tracks.size() * sizeof(planner::Track) + points * sizeof(planner::TimedPoint));
 }
 
 void FlightLog::on_setpoint(double t, const bridge::Setpoint& setpoint) {
-  write({{"type", "setpoint"},
-         {"t", t},
-         {"p", vector_json(setpoint.position)},
-         {"v", vector_json(setpoint.velocity)},
-         {"a", vector_json(setpoint.acceleration)},
-         {"yaw", setpoint.yaw}});
+  put(t, setpoint);
 }
 
 void FlightLog::on_event(double t, std::string_view name, const std::string& detail) {
-  write({{"type", "event"}, {"t", t}, {"name", name}, {"detail", detail}});
+  put(t, Event{std::string(name), detail}, detail.size());
 }
 
 void FlightLog::on_truth(double t, std::span<const sim::VehicleTruth> vehicles, const sim::World& world) {
-  for (std::size_t k = 0; k < vehicles.size(); ++k) {
-    Json record{{"type", "truth"}, {"t", t}};
-    if (vehicles.size() > 1) record["vehicle"] = k;
-    record["p"] = vector_json(vehicles[k].position);
-    record["v"] = vector_json(vehicles[k].velocity);
-    write(record);
+  Truth truth{{vehicles.begin(), vehicles.end()}, {}};
+  truth.spheres.reserve(static_cast<std::size_t>(world.obstacle_count()));
+  for (int i = 0; i < world.obstacle_count(); ++i) truth.spheres.push_back(world.sphere(i, t));
+  const std::size_t bytes =
+      truth.spheres.size() * sizeof(planner::Sphere) + vehicles.size() * sizeof(sim::VehicleTruth);
+  put(t, std::move(truth), bytes);
+}
+
+void FlightLog::put(double t, Content content, std::size_t extra_bytes) {
+  Record record{t, std::move(content), sizeof(Record) + extra_bytes};
+  {
+    std::unique_lock lock(mutex_);
+    // A record larger than the whole queue goes in alone.
+    const auto room = [&] { return queued_bytes_ == 0 || queued_bytes_ + record.bytes <= options_.queue_bytes; };
+    if (options_.wait) emptied_.wait(lock, room);
+    if (!room()) {
+      ++dropped_;
+      ++dropped_here_;
+      dropped_at_ = t;
+      return;
+    }
+    tell_of_dropped(t);
+    queued_bytes_ += record.bytes;
+    queue_.push_back(std::move(record));
   }
-  for (int i = 0; i < world.obstacle_count(); ++i) {
-    const planner::Sphere sphere = world.sphere(i, t);
-    write({{"type", "obstacles"},
-           {"t", t},
-           {"id", sim::World::id(i)},
-           {"p", vector_json(sphere.center)},
-           {"radius", sphere.radius}});
+  filled_.notify_one();
+}
+
+// Precondition: mutex_ is held.
+void FlightLog::tell_of_dropped(double t) {
+  if (dropped_here_ == 0) return;
+  queue_.push_back({t, dropped_event(std::exchange(dropped_here_, 0)), sizeof(Record)});
+  queued_bytes_ += sizeof(Record);
+}
+
+FlightLog::Event FlightLog::dropped_event(std::uint64_t count) {
+  return {"log_dropped", std::to_string(count) + " records are missing here: writing was too slow"};
+}
+
+void FlightLog::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (filled_.wait(lock, stop, [&] { return !queue_.empty(); })) {
+    const Record record = std::move(queue_.front());
+    queue_.pop_front();
+    const bool last = queue_.empty();
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      write(record);
+      if (last) out_.flush();  // whoever is killed loses little
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    if (failure && !failure_) failure_ = failure;
+    queued_bytes_ -= record.bytes;
+    emptied_.notify_one();
   }
 }
 
+std::uint64_t FlightLog::dropped() const {
+  const std::scoped_lock lock(mutex_);
+  return dropped_;
+}
+
 void FlightLog::close() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+  const std::scoped_lock lock(mutex_);
+  if (dropped_here_ > 0) write({dropped_at_, dropped_event(std::exchange(dropped_here_, 0)), 0});
+  if (dropped_ > 0) {
+    const std::string text = std::to_string(dropped_) + " records were left out, writing was too slow";
+    std::fprintf(stderr, "jink: %s: %s\n", file_.string().c_str(), text.c_str());
+  }
   out_.flush();
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   if (!out_) throw std::runtime_error(file_.string() + ": the flight log could not be written to its end");
+}
+
+void FlightLog::write(const Record& record) {
+  std::visit([&](const auto& content) { write_content(record.t, content); }, record.content);
+}
+
+JsonLine& FlightLog::begin(std::string_view type, double t) {
+  line_.clear();
+  return line_.open('{').key("type").text(type).key("t").number(t);
+}
+
+void FlightLog::end_line() {
+  line_.close('}');
+  out_ << line_.str() << '\n';
+}
+
+void FlightLog::write_content(double t, const bridge::VehicleState& state) {
+  begin("state", t).key("p").vector(state.position).key("v").vector(state.velocity);
+  line_.key("armed").flag(state.armed).key("mode").text(bridge::to_string(state.mode));
+  end_line();
+}
+
+void FlightLog::write_content(double t, const std::vector<planner::Track>& tracks) {
+  begin("tracks", t).key("tracks").open('[');
+  for (const planner::Track& track : tracks) {
+    line_.open('{').key("id").integer(track.id).key("p").vector(track.position).key("v").vector(track.velocity);
+    line_.key("a").vector(track.acceleration).key("radius").number(track.radius);
+    line_.key("position_sigma").number(track.position_sigma).key("velocity_sigma").number(track.velocity_sigma);
+    line_.key("age").number(track.age).close('}');
+  }
+  line_.close(']');
+  end_line();
+}
+
+void FlightLog::write_content(double t, const bridge::PlanResult& result) {
+  const planner::Plan& plan = result.plan;
+  begin("plan", t).key("path").open('[');
+  for (const planner::TimedPoint& point : plan.path) {
+    line_.open('[').number(result.job.start + point.t).number(point.position.x());
+    line_.number(point.position.y()).number(point.position.z()).close(']');
+  }
+  line_.close(']').key("ms").number(result.ms).key("status").text(planner::to_string(plan.status));
+  line_.key("kept").flag(plan.kept_previous).key("emergency").flag(plan.emergency);
+  line_.key("number").integer(result.job.number).key("missed").flag(result.missed).key("searches").open('[');
+  for (const planner::SearchExtent& search : plan.searches) {
+    line_.open('[').integer(static_cast<std::uint64_t>(search.schedule));
+    line_.integer(static_cast<std::uint64_t>(search.generations)).close(']');
+  }
+  line_.close(']');
+  add_job(result.job);
+  end_line();
+}
+
+// All of it: the names in brackets are all that the types have, and one more would not compile here.
+void FlightLog::add_job(const bridge::PlanJob& job) {
+  const auto& [position, velocity, target, volume, vehicle, request_tracks, margin, track_acceleration, trust] =
+      job.request;
+  const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb] = vehicle;
+  line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
+  line_.key("p").exact_vector(position).key("v").exact_vector(velocity).key("target").exact_vector(target);
+  line_.key("vehicle").open('[');
+  for (const double limit : {radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb})
+    line_.exact(limit);
+  line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
+  line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
+  line_.key("acceleration_trust").exact(trust).key("tracks").open('[');
+  for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age] : job.tracks) {
+    line_.open('[').integer(id);
+    for (const planner::Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());
+    line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age).close(']');
+  }
+  line_.close(']').key("previous").open('[');
+  for (const planner::TimedPoint& point : job.previous) {
+    line_.open('[').exact(point.t).exact(point.position.x());
+    line_.exact(point.position.y()).exact(point.position.z()).close(']');
+  }
+  line_.close(']').close('}');
+}
+
+void FlightLog::write_content(double t, const bridge::Setpoint& setpoint) {
+  begin("setpoint", t).key("p").vector(setpoint.position).key("v").vector(setpoint.velocity);
+  line_.key("a").vector(setpoint.acceleration).key("yaw").number(setpoint.yaw);
+  end_line();
+}
+
+void FlightLog::write_content(double t, const Event& event) {
+  begin("event", t).key("name").text(event.name).key("detail").text(event.detail);
+  end_line();
+}
+
+void FlightLog::write_content(double t, const Truth& truth) {
+  for (std::size_t k = 0; k < truth.vehicles.size(); ++k) {
+    begin("truth", t);
+    if (truth.vehicles.size() > 1) line_.key("vehicle").integer(k);
+    line_.key("p").vector(truth.vehicles[k].position).key("v").vector(truth.vehicles[k].velocity);
+    end_line();
+  }
+  for (std::size_t i = 0; i < truth.spheres.size(); ++i) {
+    begin("obstacles", t).key("id").integer(sim::World::id(static_cast<int>(i)));
+    line_.key("p").vector(truth.spheres[i].center).key("radius").number(truth.spheres[i].radius);
+    end_line();
+  }
 }
 
 Json parameters_of(const config::Settings& settings) {

@@ -49,6 +49,11 @@ Json flight_summary(const std::string& kind, const std::string& name, std::uint6
   summary["blocked_plans"] = flight.blocked_plans;
   summary["dropped_tracks"] = flight.dropped_tracks;
   summary["max_tracking_error"] = flight.largest_tracking_error;
+  summary["max_margin"] = flight.largest_margin;
+  summary["estimate_resets"] = flight.estimate_resets;
+  summary["hazards"] = Json::array();
+  for (const bridge::HazardRecord& hazard : flight.hazards)
+    summary["hazards"].push_back({{"what", hazard.what}, {"t", hazard.t}, {"duration_s", hazard.duration}});
   return summary;
 }
 
@@ -66,6 +71,9 @@ std::string describe_flight(const Json& s) {
                       s["deadline_misses"].get<std::uint64_t>(), number(s["plan_ms"]["p50"], "ms"),
                       number(s["plan_ms"]["p99"], "ms"), number(s["track_to_setpoint_ms"]["p50"], "ms"),
                       number(s["track_to_setpoint_ms"]["p99"], "ms"));
+  for (const Json& hazard : s["hazards"])
+    text += fmt::format("\n  braked for {} at {}: {}", number(hazard["duration_s"], "s"), number(hazard["t"], "s"),
+                        hazard["what"].get<std::string>());
   return text;
 }
 

@@ -239,11 +239,22 @@ TEST(Companion, CountsALatePlanAsAMiss) {
 }
 
 TEST(Companion, PlansAtTheStatedRateAndOneAtATime) {
-  Loop loop;
+  config::Settings settings;
+  settings.companion.replan_rate_hz = 10.0;
+  settings.companion.largest_replan_rate_hz = 20.0;
+  config::Mission m = mission();
+  m.tracks.required = false;
+  Loop loop(m, settings);
   loop.airborne().fly();
+  loop.tracks = false;
+  loop.turn();
   const std::size_t before = loop.planner.jobs.size();
   loop.run(2.0);
   EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - before), 20.0, 1.0);
+  loop.tracks = true;  // in every turn: plans at the largest rate, to within a turn
+  const std::size_t sooner = loop.planner.jobs.size();
+  loop.run(2.0);
+  EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - sooner), 2.0 / 0.06, 2.0);
   loop.planner.takes = 0.3;
   const std::size_t slow = loop.planner.jobs.size();
   loop.run(3.0);
@@ -419,6 +430,97 @@ TEST(Companion, BrakesAtTheVehicleWhereTrackingIsLost) {
   lost.companion.interrupt(lost.now);
   lost.run(0.2);
   EXPECT_NEAR(lost.last().position.y(), 2.5, 0.1);
+}
+
+// The loop is woken by a track and by the plan that it leads to, between two turns.
+TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.tracks = false;
+  loop.planner.takes = 0.005;
+  loop.run(0.04);
+  const std::size_t jobs = loop.planner.jobs.size();
+  const std::size_t sent = loop.link.sent.size();
+  const double woken = loop.now - kTurn + 0.006;
+  loop.source.messages.push_back({1, woken, 0.0, {}, 0});
+  loop.companion.step(woken);
+  ASSERT_EQ(loop.planner.jobs.size(), jobs + 1);
+  EXPECT_EQ(loop.link.sent.size(), sent);  // no setpoint out of turn without a reason
+  loop.companion.step(woken + 0.005);
+  EXPECT_EQ(loop.link.sent.size(), sent + 1);
+  EXPECT_NEAR(loop.companion.summary().track_to_setpoint_ms.back(), 5.0, 1e-6);
+}
+
+TEST(Companion, AJumpOfTheEstimateShiftsThePlan) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.run(1.0);
+  const Setpoint before = loop.last();
+  const Vec3 jump(-3, 1, 0.5);
+  loop.link.telemetry.position += jump;
+  loop.link.telemetry.estimate_shift += jump;
+  ++loop.link.telemetry.estimate_resets;
+  loop.turn();
+  EXPECT_LT((loop.last().position - before.position - jump).norm(), 0.1);
+  EXPECT_LT((loop.last().velocity - before.velocity).norm(), 0.1);
+  EXPECT_EQ(loop.recorder.count("estimate_reset"), 1);
+  EXPECT_NE(loop.recorder.last("estimate_reset").find("3.20 m"), std::string::npos);
+  loop.run(0.3);  // and so is the plan that was in the making
+  for (std::size_t i = loop.link.sent.size() - 15; i + 1 < loop.link.sent.size(); ++i)
+    EXPECT_LT((loop.link.sent[i + 1].position - loop.link.sent[i].position).norm(), 0.2);
+  EXPECT_EQ(loop.recorder.count("reference_lost"), 0);
+  EXPECT_EQ(loop.companion.summary().estimate_resets, 1U);
+}
+
+TEST(Companion, TheMarginGrowsWithTheTrackingErrorAndComesBack) {
+  Loop loop;
+  loop.airborne().fly();
+  EXPECT_EQ(loop.planner.jobs.back().request.margin, config::Settings{}.horizon.margin);
+  loop.follows = false;
+  loop.link.telemetry.position = loop.last().position + Vec3(0, 0.6, 0);
+  loop.link.telemetry.velocity = loop.last().velocity;
+  loop.turn();
+  loop.follows = true;
+  loop.run(0.2);
+  EXPECT_NEAR(loop.planner.jobs.back().request.margin, 0.6, 0.05);
+  EXPECT_EQ(loop.recorder.count("margin"), 1);
+  EXPECT_NEAR(loop.companion.summary().largest_margin, 0.6, 0.05);
+  loop.run(5.0);
+  EXPECT_EQ(loop.planner.jobs.back().request.margin, config::Settings{}.horizon.margin);
+  EXPECT_EQ(loop.recorder.last("margin"), "back to 0.35 m");
+}
+
+TEST(Companion, DoesNotFleeFromItsOwnTrack) {
+  Loop loop;
+  loop.airborne().fly();
+  for (int i = 0; i < 100; ++i) {
+    planner::Track own;
+    own.id = 9;
+    own.radius = 0.3;
+    own.position = loop.link.telemetry.position + Vec3(0.05, 0, 0);
+    own.velocity = loop.link.telemetry.velocity;
+    loop.seen = {own};
+    loop.turn();
+  }
+  EXPECT_TRUE(loop.planner.jobs.back().tracks.empty());
+  EXPECT_EQ(loop.recorder.last("tracks_self"), "1 tracks are taken for this vehicle itself");
+}
+
+TEST(Companion, TheSummaryHoldsEachHazardAndHowLongItLasted) {
+  Loop loop;
+  loop.airborne().fly();
+  for (int i = 0; i < 2; ++i) {
+    loop.tracks = false;
+    loop.run(1.5);
+    loop.tracks = true;
+    loop.run(1.0);
+  }
+  const auto hazards = loop.companion.summary().hazards;
+  ASSERT_EQ(hazards.size(), 2U);
+  for (const HazardRecord& hazard : hazards) {
+    EXPECT_EQ(hazard.what, "the obstacle tracks are stale");
+    EXPECT_NEAR(hazard.duration, 0.5, 0.05);
+  }
 }
 
 TEST(Companion, SaysNothingTwice) {

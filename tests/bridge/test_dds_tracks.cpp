@@ -3,16 +3,9 @@
 #include "bridge/dds_tracks.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <functional>
 #include <limits>
 #include <set>
@@ -21,7 +14,9 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/dds_support.hpp"
 #include "tests/bridge/child_process.hpp"
+#include "tests/bridge/dds_testing.hpp"
 
 namespace {
 
@@ -32,16 +27,11 @@ using jink::bridge::TrackLimits;
 using jink::bridge::TrackMessage;
 using jink::bridge::testing::ChildProcess;
 using jink::bridge::testing::eventually;
+using jink::bridge::testing::own_domain;
 using jink::planner::Track;
 using jink::planner::Vec3;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-// Tests run side by side, each in a process: a domain each. 1 to 100 are clear of the ephemeral ports.
-int own_domain() {
-  static int tests = 0;
-  return 1 + (static_cast<int>(getpid()) + 7 * tests++) % 100;
-}
 
 double unix_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -251,32 +241,6 @@ TEST(DdsTrackConstruction, RefusesADomainOutOfRange) {
   EXPECT_THROW(DdsTrackWriter(233), std::runtime_error);
 }
 
-// A writer of the same topic and type name that puts any bytes on the wire.
-class RawType final : public eprosima::fastdds::dds::TopicDataType {
- public:
-  RawType() {
-    setName("jink_msgs::msg::dds_::ObstacleTracks_");
-    m_typeSize = 4096;
-  }
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
-    const auto& bytes = *static_cast<std::vector<unsigned char>*>(data);
-    std::memcpy(payload->data, bytes.data(), bytes.size());
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    return true;
-  }
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* /*payload*/, void* /*data*/) override {
-    return false;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<std::vector<unsigned char>*>(data)->size()); };
-  }
-  void* createData() override { return new std::vector<unsigned char>; }
-  void deleteData(void* data) override { delete static_cast<std::vector<unsigned char>*>(data); }
-  bool getKey(void* /*data*/, eprosima::fastrtps::rtps::InstanceHandle_t* /*handle*/, bool /*md5*/) override {
-    return false;
-  }
-};
-
 // Little-endian CDR of a message of no tracks in frame `map`, but for the number of tracks that it states.
 std::vector<unsigned char> stated_length(std::uint32_t count) {
   std::vector<unsigned char> bytes{0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 4, 0, 0, 0, 'm', 'a', 'p', 0};
@@ -285,23 +249,13 @@ std::vector<unsigned char> stated_length(std::uint32_t count) {
 }
 
 TEST(DdsTrackReader, SurvivesMalformedPayloads) {
-  namespace dds = eprosima::fastdds::dds;
   const SteadyClock clock;
   const int domain = own_domain();
   DdsTrackReader reader(domain, clock);
-  auto* factory = dds::DomainParticipantFactory::get_instance();
-  auto* participant = factory->create_participant(static_cast<dds::DomainId_t>(domain), dds::PARTICIPANT_QOS_DEFAULT);
-  ASSERT_NE(participant, nullptr);
-  dds::TypeSupport type(new RawType);
-  type.register_type(participant);
-  auto* topic = participant->create_topic(jink::bridge::kTracksTopic, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
-  dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;  // a reliable writer matches the best-effort reader too
-  auto* writer = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)->create_datawriter(topic, qos);
-  ASSERT_TRUE(eventually([&] { return reader.status().writers == 1; }));
-  // The writer's own view of the match, without which it sends nothing.
-  dds::PublicationMatchedStatus matched;
-  ASSERT_TRUE(eventually([&] { return writer->get_publication_matched_status(matched), matched.current_count == 1; }));
+  jink::bridge::DdsNode peer(domain);
+  // A reliable writer matches the best-effort reader too.
+  jink::bridge::PayloadWriter writer(peer, jink::bridge::kTracksTopic, jink::bridge::kTracksType, {.reliable = true});
+  ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
 
   std::vector<std::vector<unsigned char>> bad{
       stated_length(1),            // truncated: a track is stated and none is there
@@ -310,22 +264,20 @@ TEST(DdsTrackReader, SurvivesMalformedPayloads) {
       {0, 1, 0, 0},
       {0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 'm'},  // a string longer than the payload
       {9, 9, 9, 9, 9, 9, 9, 9},
-      {0, 1},
+      {0, 1, 0, 0, 1},
   };
   std::uint64_t sent = 0;
   for (auto& bytes : bad) {
-    ASSERT_TRUE(writer->write(&bytes));
+    ASSERT_TRUE(writer.write(bytes));
     ++sent;
     EXPECT_TRUE(eventually([&] { return reader.malformed() >= sent; })) << "payload " << sent;
   }
   auto good = stated_length(0);
-  ASSERT_TRUE(writer->write(&good));
+  ASSERT_TRUE(writer.write(good));
   TrackMessage message;
   EXPECT_TRUE(eventually([&] { return reader.poll(message); }));
   EXPECT_EQ(reader.malformed(), sent);
   EXPECT_EQ(reader.status().messages, 1U);
-  participant->delete_contained_entities();
-  factory->delete_participant(participant);
 }
 
 class OtherVendor : public ::testing::TestWithParam<bool> {};

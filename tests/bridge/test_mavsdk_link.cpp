@@ -3,11 +3,7 @@
 // code with it (pymavlink) and answers as PX4 does.
 #include "bridge/mavsdk_link.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +20,7 @@
 
 #include "bridge/command_tracker.hpp"
 #include "bridge/px4.hpp"
-#include "tests/bridge/child_process.hpp"
+#include "tests/bridge/mavsdk_link_test.hpp"
 
 namespace {
 
@@ -37,7 +33,6 @@ using jink::bridge::MavsdkLink;
 using jink::bridge::Setpoint;
 using jink::bridge::SteadyClock;
 using jink::bridge::VehicleState;
-using jink::bridge::testing::ChildProcess;
 using jink::bridge::testing::eventually;
 using jink::planner::Vec3;
 using nlohmann::json;
@@ -149,68 +144,8 @@ TEST(CommandTracker, SaysThatANewerRequestTookTheAnswer) {
   EXPECT_EQ(text(tracker.next(0.1)), "arm yes");
 }
 
-int free_udp_port() {
-  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* generic = reinterpret_cast<sockaddr*>(&address);
-  const bool ok = bind(fd, generic, size) == 0 && getsockname(fd, generic, &size) == 0;
-  close(fd);
-  if (!ok) throw std::runtime_error("no free UDP port");
-  return ntohs(address.sin_port);
-}
-
-class MavsdkLinkTest : public ::testing::Test {
- protected:
-  // A link that listens and a peer that speaks to it.
-  void connect(const std::vector<std::string>& peer_options = {}) {
-    const std::string port = std::to_string(free_udp_port());
-    link_ = std::make_unique<MavsdkLink>("udpin://127.0.0.1:" + port, clock_);
-    const std::string root = JINK_SOURCE_DIR;
-    std::vector<std::string> arguments{root + "/.venv/bin/python", root + "/tests/bridge/px4_peer.py", "--port", port};
-    arguments.insert(arguments.end(), peer_options.begin(), peer_options.end());
-    peer_ = std::make_unique<ChildProcess>(arguments);
-    ASSERT_TRUE(link_->wait_for_autopilot(30.0));
-  }
-
-  bool state_becomes(const std::function<bool(const VehicleState&)>& condition) {
-    return eventually([&] { return condition(link_->state()); });
-  }
-
-  CommandReport next_report() {
-    std::optional<CommandReport> report;
-    EXPECT_TRUE(eventually([&] { return (report = link_->next_report()).has_value(); }));
-    return report.value_or(CommandReport{});
-  }
-
-  std::vector<json> heard(const std::string& type) {
-    std::vector<json> messages;
-    for (const std::string& line : peer_->lines()) {
-      json message = json::parse(line);
-      if (message["type"] == type) messages.push_back(std::move(message));
-    }
-    return messages;
-  }
-
-  // The peer's record of the last command with this MAV_CMD.
-  json heard_command(int id) {
-    json found;
-    EXPECT_TRUE(eventually([&] {
-      for (const json& message : heard("command")) {
-        if (message["command"] == id) found = message;
-      }
-      return !found.is_null();
-    })) << "command "
-        << id;
-    return found;
-  }
-
-  SteadyClock clock_;
-  std::unique_ptr<MavsdkLink> link_;
-  std::unique_ptr<ChildProcess> peer_;
-};
+using jink::bridge::testing::free_udp_port;
+using jink::bridge::testing::MavsdkLinkTest;
 
 TEST_F(MavsdkLinkTest, StateArrivesInEnu) {
   connect();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include <cmath>
 
 namespace jink::bridge {
@@ -103,6 +105,37 @@ TEST(SetpointStream, BrakesAtTheStatedRateWithoutReversing) {
     }
     EXPECT_EQ(stream.setpoint(9.0, 0.0).acceleration, Vec3::Zero());
   }
+}
+
+TEST(SetpointStream, BrakesHarderWhereTheVolumeEndsSoon) {
+  SetpointStream::Settings settings = plain();
+  settings.hardest = 6.0;
+  settings.volume = {{-10, -10, 1}, {10, 10, 8}};
+  struct Case {
+    Vec3 from, velocity;
+    double way;  // of the stop
+  };
+  const std::vector<Case> cases{{{0, 0, 5}, {4, 0, 0}, 4.0},          // room enough
+                                {{8, 0, 5}, {4, 0, 0}, 2.0},          // 4 m/s² does it
+                                {{9.5, 0, 5}, {4, 0, 0}, 4.0 / 3.0},  // nothing does: as hard as may be
+                                {{0, 0, 2}, {0, 0, -3}, 1.0},
+                                {{12, 0, 5}, {4, 0, 0}, 4.0}};  // outside: nothing to keep
+  for (const Case& c : cases) {
+    SetpointStream stream(settings);
+    stream.follow(line(0.0, c.from, c.velocity));
+    stream.brake(0.0);
+    EXPECT_NEAR((stream.reference(50.0).position - c.from).norm(), c.way, 0.02) << c.from.transpose();
+  }
+}
+
+TEST(SetpointStream, MovesAlongWithTheEstimate) {
+  SetpointStream stream(plain());
+  stream.follow(line(0.0, {0, 0, 5}, {1, 0, 0}));
+  stream.follow(line(2.0, {2, 0, 5}, {0, 1, 0}));
+  stream.shift({3, 0, -1});
+  EXPECT_LT((stream.reference(1.0).position - Vec3(4, 0, 4)).norm(), 1e-9);
+  EXPECT_LT((stream.reference(3.0).position - Vec3(5, 1, 4)).norm(), 1e-9);
+  EXPECT_EQ(stream.reference(3.0).velocity, Vec3(0, 1, 0));
 }
 
 TEST(SetpointStream, ASecondBrakeChangesNothing) {

@@ -466,13 +466,15 @@ struct Hazard {
 
 const std::vector<Hazard>& hazards() {
   static const std::vector<Hazard> all{
-      {"state", [](Flight& f) { f.positions = false; }, [](Flight& f) { f.positions = true; }, 0.5, "position is stale",
+      {"state", [](Flight& f) { f.positions = false; }, [](Flight& f) { f.positions = true; }, 0.2, "position is stale",
        true},
       {"heartbeat", [](Flight& f) { f.heartbeats = false; }, [](Flight& f) { f.heartbeats = true; }, 3.0,
        "heartbeat is missing", true},
       {"tracks", [](Flight& f) { f.tracks = false; }, [](Flight& f) { f.tracks = true; }, 1.0, "tracks are stale",
        true},
-      {"plan", [](Flight& f) { f.plans = false; }, [](Flight& f) { f.plans = true; }, 0.5, "planner is late", false}};
+      {"plan", [](Flight& f) { f.plans = false; }, [](Flight& f) { f.plans = true; }, 0.3, "planner is late", false},
+      {"estimator", [](Flight& f) { f.state.local_position_ok = false; },
+       [](Flight& f) { f.state.local_position_ok = true; }, 0.0, "lost its position", true}};
   return all;
 }
 
@@ -486,7 +488,9 @@ TEST(Supervisor, BrakesAtOnceOnEachHazardAndFollowsAgainWhenItPasses) {
       const Motion normal = climbing ? Motion::kTakeoffPoint : Motion::kFollow;
       flight.run(2.0);
       hazard.begin(flight);
-      EXPECT_EQ(flight.run(hazard.age - 2 * kTurn).motion, normal);
+      if (hazard.age > 0.0) {
+        EXPECT_EQ(flight.run(hazard.age - 2 * kTurn).motion, normal);
+      }
       EXPECT_EQ(flight.run(4 * kTurn).motion, Motion::kBrake);
       EXPECT_NE(flight.supervisor.hazard().find(hazard.text), std::string::npos) << flight.supervisor.hazard();
       flight.run(2.0);
@@ -530,11 +534,183 @@ TEST(Supervisor, TheFirstPlanHasItsTime) {
   Flight flight;
   flight.plans = false;
   flight.fly();
-  EXPECT_EQ(flight.run(0.45).motion, Motion::kFollow);
+  EXPECT_EQ(flight.run(0.25).motion, Motion::kFollow);
   EXPECT_EQ(flight.run(0.1).motion, Motion::kBrake);
 }
 
+TEST(Supervisor, AHazardThatComesAgainAndAgainEndsTheFlight) {
+  Flight flight;
+  flight.fly();
+  int times = 0;
+  for (; times < 20 && flight.supervisor.phase() == Phase::kFlying; ++times) {
+    flight.state.local_position_ok = false;
+    flight.run(1.0);
+    flight.state.local_position_ok = true;
+    flight.run(0.2);
+  }
+  EXPECT_EQ(times, 7);  // 1 s each, of which the pauses forget a fifteenth: more than 6 s in the seventh
+  EXPECT_NE(flight.supervisor.reason().find("again and again"), std::string::npos) << flight.supervisor.reason();
+}
+
+// ---- failsafes of the autopilot
+
+TEST(Supervisor, AFailsafeThatPassesIsAHazardAndNoTakeover) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  EXPECT_EQ(flight.run(1.0).motion, Motion::kBrake);  // the stream goes on, which brings OFFBOARD back
+  EXPECT_NE(flight.supervisor.hazard().find("failsafe"), std::string::npos);
+  flight.state.mode = FlightMode::kOffboard;
+  flight.state.failsafe = false;
+  EXPECT_EQ(flight.turn().motion, Motion::kFollow);
+  // The next one has its time again.
+  flight.run(1.0);
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  flight.run(1.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
+}
+
+TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  flight.run(2.0);
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);
+  EXPECT_EQ(flight.asked(Command::kHold), 1);
+  flight.state.mode = FlightMode::kHold;
+  flight.state.failsafe = false;
+  flight.turn();
+  ASSERT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "the autopilot's failsafe took over, mode position");
+}
+
+TEST(Supervisor, AFailsafeThatHoldIsRefusedToKeepsTheVehicle) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.mode = FlightMode::kAltitude;
+  flight.state.failsafe = true;
+  flight.run(1.6);
+  flight.refuse(Command::kHold, "temporarily rejected");
+  flight.run(10.0);
+  ASSERT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.asked(Command::kHold), 5);
+  EXPECT_NE(flight.supervisor.reason().find("HOLD was not to be had"), std::string::npos);
+}
+
+TEST(Supervisor, AFailsafeWithoutPositionIsLeftAlone) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.mode = FlightMode::kAltitude;
+  flight.state.failsafe = true;
+  flight.state.local_position_ok = false;
+  flight.run(2.0);
+  ASSERT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.asked(Command::kHold), 0);
+  EXPECT_NE(flight.supervisor.reason().find("without a position"), std::string::npos);
+}
+
+TEST(Supervisor, AFailsafeThatLandsReturnsOrHoldsIsNotInterfered) {
+  for (const FlightMode mode : {FlightMode::kLand, FlightMode::kReturn, FlightMode::kHold}) {
+    Flight flight;
+    flight.fly().run(1.0);
+    flight.state.mode = mode;
+    flight.state.failsafe = true;
+    flight.run(2.0);
+    ASSERT_TRUE(flight.supervisor.done()) << to_string(mode);
+    EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+    EXPECT_TRUE(flight.asked(Command::kHold) == 0 && flight.asked(Command::kLand) == 0);
+  }
+}
+
+TEST(Supervisor, TakesOverFromAFailsafeOfACompanionBeforeIt) {
+  Flight flight;
+  flight.state.mode = FlightMode::kOffboard;
+  flight.state.armed = false;
+  flight.state.in_air = true;
+  flight.turn();  // engaging, with a heartbeat from before the failsafe
+  flight.turn();
+  flight.state.armed = true;
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  EXPECT_EQ(flight.turn().motion, Motion::kStay);
+  EXPECT_EQ(flight.requests.back(), Command::kOffboard);
+  flight.state.mode = FlightMode::kOffboard;
+  flight.state.failsafe = false;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
+}
+
+// ---- battery and fence
+
+TEST(Supervisor, ACriticalBatteryEndsTheFlightByLanding) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.battery = BatteryState::kLow;
+  EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
+  flight.state.battery = BatteryState::kCritical;
+  EXPECT_EQ(flight.turn().motion, Motion::kBrake);
+  flight.picture.at_rest = true;
+  flight.run(0.5);
+  EXPECT_EQ(flight.requests.back(), Command::kLand);
+  EXPECT_EQ(flight.asked(Command::kHold), 0);
+  flight.state.mode = FlightMode::kLand;
+  flight.run(1.0);
+  // Ctrl-C must not keep it in the air.
+  flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "the battery is critical; interrupted, the landing goes on");
+  EXPECT_EQ(flight.asked(Command::kHold), 0);
+}
+
+TEST(Supervisor, DoesNotBeginWithALowBattery) {
+  Flight flight;
+  flight.state.battery = BatteryState::kLow;
+  flight.run(61.0);
+  EXPECT_TRUE(flight.requests.empty());
+  EXPECT_NE(flight.supervisor.reason().find("charged battery: it is low"), std::string::npos);
+}
+
+TEST(Supervisor, DoesNotBeginOutsideTheGeofence) {
+  config::Mission m = mission();
+  m.geofence = {{-5, -5, 0}, {30, 5, 10}};
+  for (const bool outside : {false, true}) {
+    Flight flight(m);
+    flight.state.position = {outside ? -6.0 : -4.0, 0, 0};
+    flight.turn();
+    EXPECT_EQ(flight.supervisor.done(), outside);
+    if (!outside) continue;
+    EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+    EXPECT_NE(flight.supervisor.reason().find("outside the geofence, at east -6.0 m"), std::string::npos);
+  }
+}
+
 // ---- the end
+
+TEST(Supervisor, InterruptInTheLandingEndsInHold) {
+  config::Mission m = mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly();
+  flight.picture.at_target = true;
+  flight.turn();
+  flight.turn();
+  flight.state.mode = FlightMode::kLand;
+  flight.run(1.0);
+  flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);  // no setpoints, which are not flown in LAND
+  EXPECT_EQ(flight.requests.back(), Command::kHold);
+  EXPECT_FALSE(flight.supervisor.done());
+  flight.state.mode = FlightMode::kHold;
+  flight.turn();
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "interrupted");
+}
 
 TEST(Supervisor, TheTimeLimitEndsInHold) {
   Flight flight;

@@ -313,7 +313,7 @@ struct TeamCompanion {
     mission.waypoints = {{20, 0, 5}};
     mission.tracks.required = false;
     mission.intents = on;
-    companion.emplace(mission, config::Settings{}, CompanionParts{link, tracks, planner, {&recorder}, &intents});
+    companion.emplace(mission, config::Settings{}, CompanionParts{link, tracks, planner, {&recorder}, nullptr, &intents});
   }
   void run(double from, double to) {
     for (double t = from; t < to; t += 0.02) {

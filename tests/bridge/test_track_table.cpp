@@ -117,7 +117,7 @@ TEST(TrackTable, WorksWithAClockThatIsOffByAnHourInEitherDirection) {
     TrackTable table(kCoast);
     feed(table, 10.0, 12.0, 0.03, offset);
     EXPECT_LE(error_of(table, 12.0), 0.03 + 1e-9);
-    EXPECT_GT(table.clock_offsets(), 0U);
+    EXPECT_GT(table.counts().clock_offsets, 0U);
     // A message that is held up for 0.4 s more is known to be.
     table.ingest(message(12.4, 0.43 + offset, {track(1, {11.97, 0, 0}, {1, 0, 0})}));
     EXPECT_LE(error_of(table, 12.4), 0.03 + 1e-9);
@@ -129,8 +129,8 @@ TEST(TrackTable, BelievesStampsThatMakeSense) {
   TrackTable table(kCoast);
   feed(table, 10.0, 12.0, 0.25, 0.0);
   EXPECT_LE(error_of(table, 12.0), 1e-9);
-  EXPECT_EQ(table.clock_offsets(), 0U);
-  EXPECT_EQ(table.late_messages(), 0U);
+  EXPECT_EQ(table.counts().clock_offsets, 0U);
+  EXPECT_EQ(table.counts().late_messages, 0U);
 }
 
 // One of the clocks is set in flight: until that is certain the tracks count as silent, then they are right again.
@@ -164,7 +164,7 @@ TEST(TrackTable, ABurstOfOldMessagesIsNotTakenForThePresent) {
     }
   }
   EXPECT_LE(error_of(table, 13.0), 1e-9);
-  EXPECT_GT(table.late_messages(), 0U);
+  EXPECT_GT(table.counts().late_messages, 0U);
 }
 
 // A tracker that hangs and publishes its last picture again and again.
@@ -172,15 +172,103 @@ TEST(TrackTable, TheSamePictureAgainAndAgainGoesStale) {
   TrackTable table(kCoast);
   feed(table, 10.0, 12.0, 0.03, 0.0);
   for (double t = 12.0; t < 20.0; t += 0.05) table.ingest(message(t, t - 11.92, {track(1, {11.92, 0, 0}, {1, 0, 0})}));
-  EXPECT_LE(table.newest_message(), 11.92 + TrackTable::kLongestDelay + 0.1);
+  EXPECT_LE(table.newest_message(), 11.92 + StampClock::kLongestDelay + 0.1);
   EXPECT_TRUE(table.predict(20.0, 1.0).empty());
+}
+
+// The same with fresh stamps: what moves cannot be where it was.
+TEST(TrackTable, AFrozenPictureWithFreshStampsGoesStale) {
+  TrackTable table(kCoast);
+  const Track still = track(2, {5, 5, 0});
+  for (double t = 10.0; t < 12.0; t += 0.05) table.ingest(message(t, 0.03, {track(1, {t, 0, 0}, {1, 0, 0}), still}));
+  const Track stuck = track(1, {11.99, 0, 0}, {1, 0, 0});
+  table.ingest(message(12.0, 0.03, {stuck, still}));
+  for (double t = 12.05; t < 15.0; t += 0.05) {
+    table.ingest(message(t, 0.03, {stuck, still}));
+    if (t < 12.5) {
+      EXPECT_NEAR(table.predict(t, 1.0)[0].position.x(), t, 0.1);  // predicted on meanwhile
+    }
+  }
+  EXPECT_EQ(table.newest_message(), 12.0);
+  EXPECT_GT(table.counts().frozen_messages, 50U);
+  EXPECT_TRUE(table.predict(15.0, 1.0).empty());
+}
+
+TEST(TrackTable, APictureOfWhatStandsStillIsNotFrozen) {
+  TrackTable table(kCoast);
+  for (double t = 10.0; t < 12.0; t += 0.05) table.ingest(message(t, 0.03, {track(2, {5, 5, 0})}));
+  EXPECT_EQ(table.counts().frozen_messages, 0U);
+  EXPECT_EQ(table.predict(12.0, 1.0).size(), 1U);
+}
+
+TEST(TrackTable, LeavesOutWhatIsNoTrackAndCountsIt) {
+  TrackTable table(kCoast);
+  const double nan = std::nan("");
+  std::vector<Track> bad(9, track(7, {1, 1, 1}));
+  bad[0].position.x() = nan;
+  bad[1].position.y() = 1e300;
+  bad[2].velocity.z() = planner::kInfinity;
+  bad[3].acceleration.x() = nan;
+  bad[4].radius = 0.0;
+  bad[5].radius = nan;
+  bad[6].position_sigma = -1.0;
+  bad[7].velocity_sigma = nan;
+  bad[8].velocity.x() = 2000.0;
+  bad.push_back(track(8, {2, 2, 2}));
+  table.ingest(message(10.0, 0.0, bad));
+  ASSERT_EQ(table.predict(10.0, 1.0).size(), 1U);
+  EXPECT_EQ(table.predict(10.0, 1.0)[0].id, 8U);
+  EXPECT_EQ(table.counts().invalid_tracks, 9U);
+}
+
+TEST(TrackTable, IsBoundedAndMakesRoomWhenTracksGo) {
+  TrackTable table(kCoast);
+  std::vector<Track> many;
+  for (std::uint64_t id = 0; id < TrackTable::kMost + 100; ++id) {
+    many.push_back(track(id, {static_cast<double>(id), 0, 0}));
+  }
+  table.ingest(message(10.0, 0.0, many));
+  EXPECT_EQ(table.predict(10.0, 1.0).size(), TrackTable::kMost);
+  EXPECT_EQ(table.counts().surplus_tracks, 100U);
+  table.ingest(message(11.5, 0.0, {track(1'000'000, {0, 0, 0})}));
+  EXPECT_EQ(table.predict(11.5, 1.0).size(), 1U);
+}
+
+// A tracker that sees the vehicle too, 10 cm off, while an obstacle passes closely.
+TEST(TrackTable, TellsTheVehiclesOwnTrack) {
+  TrackTable table(kCoast);
+  const Vec3 velocity(2, 0, 0);
+  for (double t = 10.0; t < 11.0; t += 0.05) {
+    const Vec3 own = (t - 10.0) * velocity;
+    table.ingest(message(t, 0.0,
+                         {track(1, own + Vec3(0, 0.1, 0), velocity), track(2, own + Vec3(0, 0.6, 0), velocity),
+                          track(3, {1, 0, 0}, -velocity)}));
+    table.find_self(t, own, velocity, 0.3);
+    const auto seen = table.predict(t, 1.0);
+    ASSERT_EQ(seen.size(), t < 10.0 + TrackTable::kSelfTime - 1e-6 ? 3U : 2U) << t;
+    EXPECT_EQ(seen[seen.size() - 2].id, 2U);
+  }
+  EXPECT_EQ(table.own_tracks(), 1);
+  // It leaves: then it is somebody else.
+  table.ingest(message(11.05, 0.0, {track(1, {2, 2, 0}, velocity)}));
+  table.find_self(11.05, {2.1, 0, 0}, velocity, 0.3);
+  EXPECT_EQ(table.own_tracks(), 0);
+}
+
+TEST(TrackTable, CountsTheWritersThatFellSilent) {
+  TrackTable table(kCoast);
+  table.ingest(message(10.0, 0.0, {}, 1));
+  for (double t = 10.0; t < 20.0; t += 0.5) table.ingest(message(t, 0.0, {}, 2));
+  EXPECT_EQ(table.silent_writers(10.5, 1.0), 0);
+  EXPECT_EQ(table.silent_writers(19.6, 1.0), 1);
+  EXPECT_EQ(table.silent_writers(10.0 + TrackTable::kForgetWriter + 1.0, 60.0), 0);
 }
 
 TEST(TrackTable, AWriterThatDoesNotStampIsTakenAsPrompt) {
   TrackTable table(kCoast);
   for (double t = 10.0; t < 15.0; t += 0.05) table.ingest(message(t, 1.8e9 + t, {track(1, {t, 0, 0}, {1, 0, 0})}));
   EXPECT_LE(error_of(table, 15.0), 1e-6);
-  EXPECT_GT(table.clock_offsets(), 50U);
+  EXPECT_GT(table.counts().clock_offsets, 50U);
 }
 
 TEST(TrackTable, EachWriterHasItsOwnClock) {

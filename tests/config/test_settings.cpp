@@ -164,7 +164,7 @@ TEST(LoadSettings, RefusesBadFiles) {
       {"opposition:", "oppositon:", 0, "optimizer.oppositon", "false", "did you mean 'opposition'?"},
       {"opposition: false", "opposition: no", 0, "optimizer.opposition", "no", "is not one of false, true"},
       {"keep_ratio: 0.05", "keep_ratio: 1", 0, "horizon.keep_ratio", "1", "is not in [0, 1)"},
-      {"stale_plan: 0.5", "stale_plan: .nan", 0, "companion.stale_plan", ".nan", "not a finite number"},
+      {"stale_plan: 0.3", "stale_plan: .nan", 0, "companion.stale_plan", ".nan", "not a finite number"},
       {"companion:\n", "companions:\n", 0, "companions", "", "did you mean 'companion'?"},
       {"horizon:\n", "horizon: []\nignored:\n", 1, "ignored", "", "unknown key"},
   };

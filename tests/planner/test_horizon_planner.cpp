@@ -241,8 +241,26 @@ TEST(HorizonPlanner, PlanUnderADeadlineIsRepeatedByItsSchedule) {
   const Plan cut = planner.plan(r, {}, 1, 1, {1000000, soon}, pool);
   EXPECT_LT(cut.schedule, 1000000);
   EXPECT_LE(cut.generations, cut.schedule);
-  const Plan again = planner.plan(r, {}, 1, 1, {cut.schedule, Budget::Time::max(), cut.generations}, pool);
+  const Plan again = HorizonPlanner{HorizonSettings{}}.repeat(r, {}, 1, 1, cut.searches, pool);
   expect_same_path(again.path, cut.path);
+  EXPECT_EQ(again.searches, cut.searches);
+}
+
+// The search with more acceleration goes its own way under a deadline. Here that has passed already: the first search,
+// which knows no pace, is stopped after one of its 40 generations, the second is scheduled for one.
+TEST(HorizonPlanner, RepeatsTheSearchWithMoreAccelerationAsFarAsItWent) {
+  const std::vector<Track> tracks{sphere(1, {16, 0, 2}, {-14, 0, 0}, 6.0)};
+  const PathRequest r = request(tracks);
+  WorkerPool pool(2);
+  const Plan cut = HorizonPlanner{HorizonSettings{}}.plan(r, {}, 1, 0, {40, std::chrono::steady_clock::now()}, pool);
+  ASSERT_EQ(cut.searches[0], (SearchExtent{40, 1}));
+  ASSERT_EQ(cut.searches[1], (SearchExtent{1, 1}));
+  HorizonPlanner other{HorizonSettings{}};
+  const Plan again = other.repeat(r, {}, 1, 0, cut.searches, pool);
+  expect_same_path(again.path, cut.path);
+  EXPECT_EQ(again.status, cut.status);
+  EXPECT_EQ(again.searches, cut.searches);
+  EXPECT_THROW(other.repeat(r, {}, 1, 0, {}, pool), std::invalid_argument);
 }
 
 Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {

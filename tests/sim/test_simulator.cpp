@@ -114,8 +114,7 @@ TEST(Simulator, TheClockWaitsForEveryVehicle) {
   EXPECT_EQ(stage.simulator->reports()[1].flight.reason, "the vehicle never came to the start in OFFBOARD");
   // The first need not wait at its start for the second.
   const Vec3 ahead = scenario.start + Vec3(2, 0, 0);
-  EXPECT_TRUE(
-      stage.run(40.0, {ahead, scenario.vehicles[0].start}, [&] { return stage.simulator->clock_runs(); }));
+  EXPECT_TRUE(stage.run(40.0, {ahead, scenario.vehicles[0].start}, [&] { return stage.simulator->clock_runs(); }));
   EXPECT_TRUE(stage.said("clock: "));
   EXPECT_FALSE(stage.run(1.0, {ahead, scenario.vehicles[0].start}, [] { return false; }));
   EXPECT_GT(stage.publications.back().message.tracks.at(0).position.y(), -7.5);

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Real processes for the system tests: `jink sim`, `jink fly` and others, on ports and a DDS domain of their own."""
 
+import contextlib
+import io
 import json
 import pathlib
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import yaml
@@ -19,10 +22,28 @@ class Failed(Exception):
     """A check did not hold; its text says which."""
 
 
+_thread = threading.local()
+
+
+def say(text):
+    """A line to standard output, or to where this thread's lines are kept."""
+    print(text, flush=True, file=getattr(_thread, "kept", None) or sys.stdout)
+
+
+@contextlib.contextmanager
+def kept_lines():
+    """What this thread says is kept instead of printed."""
+    _thread.kept = io.StringIO()
+    try:
+        yield _thread.kept
+    finally:
+        _thread.kept = None
+
+
 def check(holds, text):
     if not holds:
         raise Failed(text)
-    print(f"ok   {text}", flush=True)
+    say(f"ok   {text}")
 
 
 class Arena:
@@ -45,7 +66,7 @@ class Arena:
             process.wait()
         if kind is not None:
             for text in sorted(self.folder.glob("*.txt")):
-                print(f"--- {text.name}\n{text.read_text(errors='replace')[-6000:]}", flush=True)
+                say(f"--- {text.name}\n{text.read_text(errors='replace')[-6000:]}")
 
     def start(self, name, command):
         """Starts a process whose output goes to NAME.txt."""

@@ -4,7 +4,6 @@
 #include "tools/report/report.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/tools/folder.hpp"
 #include "tools/report/flight_data.hpp"
 #include "tools/report/report_data.hpp"
 
@@ -27,29 +27,6 @@ constexpr char kHeader[] =
     R"("target":[20,0,1.5],"vehicle":{"radius":0.25},"world":null,"parameters":{"horizon.step":"0.1"}})"
     "\n";
 constexpr char kDataBegin[] = "id=\"flight-data\">";
-
-/// A folder of its own for each test, gone afterwards.
-class Folder {
- public:
-  Folder() {
-    const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    path_ = std::filesystem::temp_directory_path() / ("jink-report-" + std::to_string(::getpid()) + "-" + test);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  [[nodiscard]] std::filesystem::path log(const std::string& text) const {
-    std::ofstream(path_ / "flight.jsonl", std::ios::binary) << text;
-    return path_ / "flight.jsonl";
-  }
-  [[nodiscard]] std::filesystem::path html() const { return path_ / "flight.html"; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string read(const std::filesystem::path& file) {
   std::ostringstream text;

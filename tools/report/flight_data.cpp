@@ -2,67 +2,21 @@
 #include "tools/report/flight_data.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <limits>
-#include <optional>
 #include <stdexcept>
+
+#include "tools/report/log_lines.hpp"
 
 namespace jink::tools {
 namespace {
 
 using Json = nlohmann::json;
 
-/// A record that holds null where a number belongs: the log's way to write one that is not finite.
-struct NotFinite {};
-
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument(what);
 }
 
-const Json& member(const Json& record, const char* key) {
-  const auto found = record.find(key);
-  if (found == record.end()) refuse(std::string("has no \"") + key + "\"");
-  return *found;
-}
-
-double number(const Json& value, const char* key) {
-  if (value.is_null()) throw NotFinite{};
-  if (!value.is_number()) refuse(std::string("\"") + key + "\" is not a number");
-  const double x = value.get<double>();
-  if (!std::isfinite(x)) throw NotFinite{};
-  return x;
-}
-
-double number_of(const Json& record, const char* key) {
-  return number(member(record, key), key);
-}
-
-template <std::size_t N>
-std::array<double, N> numbers(const Json& value, const char* key) {
-  if (!value.is_array() || value.size() != N) {
-    refuse(std::string("\"") + key + "\" is not a list of " + std::to_string(N) + " numbers");
-  }
-  std::array<double, N> result{};
-  for (std::size_t i = 0; i < N; ++i) result[i] = number(value[i], key);
-  return result;
-}
-
 Triple triple_of(const Json& record, const char* key) {
   return numbers<3>(member(record, key), key);
-}
-
-std::string text_of(const Json& record, const char* key) {
-  const Json& value = member(record, key);
-  if (!value.is_string()) refuse(std::string("\"") + key + "\" is not text");
-  return value.get<std::string>();
-}
-
-bool flag_of(const Json& record, const char* key) {
-  const auto found = record.find(key);
-  if (found == record.end()) return false;
-  if (!found->is_boolean()) refuse(std::string("\"") + key + "\" is not true or false");
-  return found->get<bool>();
 }
 
 Body body_of(const Json& record, bool moving) {
@@ -78,16 +32,7 @@ class Reader {
  public:
   explicit Reader(FlightData& flight) : data_(flight) {}
 
-  void header(const Json& record) {
-    if (!record.is_object() || record.value("type", Json()) != "header")
-      refuse("the first line is not a jink-log/1 header");
-    const Json format = record.value("format", Json());
-    if (format != "jink-log/1") refuse("format: " + format.dump() + " is not \"jink-log/1\"");
-    data_.header = record;
-  }
-
   void take(const Json& record) {
-    if (!record.is_object()) refuse("is not a JSON object");
     const std::string type = text_of(record, "type");
     try {
       const double t = number_of(record, "t");
@@ -120,17 +65,13 @@ class Reader {
       note_mode(t, record);
     } else if (type == "tracks") {
       BodyFrame frame{t, {}};
-      const Json& tracks = member(record, "tracks");
-      if (!tracks.is_array()) refuse("\"tracks\" is not a list");
-      for (const Json& track : tracks) frame.bodies.push_back(body_of(track, true));
+      for (const Json& track : list_of(record, "tracks")) frame.bodies.push_back(body_of(track, true));
       data_.tracks.push_back(std::move(frame));
     } else if (type == "plan") {
       PlanRecord plan{
           t, number_of(record, "ms"), text_of(record, "status"), flag_of(record, "kept"), flag_of(record, "missed"),
           {}};
-      const Json& path = member(record, "path");
-      if (!path.is_array()) refuse("\"path\" is not a list");
-      for (const Json& point : path) plan.path.push_back(numbers<4>(point, "path"));
+      for (const Json& point : list_of(record, "path")) plan.path.push_back(numbers<4>(point, "path"));
       data_.plans.push_back(std::move(plan));
     } else if (type == "setpoint") {
       data_.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
@@ -157,39 +98,19 @@ class Reader {
 }  // namespace
 
 FlightData read_flight(const std::filesystem::path& log) {
-  std::ifstream in(log, std::ios::binary);
-  if (!in) throw std::runtime_error(log.string() + ": cannot read the flight log");
+  LogLines lines(log);
   FlightData flight;
+  flight.header = lines.header();
   Reader reader(flight);
-  std::size_t line_number = 0;
-  std::size_t broken = 0;  // the line that is no JSON; an error only once another follows it
-  const auto fail = [&](std::size_t line, const std::string& what) {
-    throw std::runtime_error(log.string() + ":" + std::to_string(line) + ": " + what);
-  };
-  for (std::string line; std::getline(in, line);) {
-    ++line_number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    if (broken != 0) fail(broken, "is not JSON");
-    ++flight.lines;
-    const Json record = Json::parse(line, nullptr, false);
-    if (record.is_discarded()) {
-      broken = line_number;
-      if (flight.header.is_null()) fail(line_number, "the first line is not a jink-log/1 header");
-      continue;
-    }
+  for (Json record; lines.next(record);) {
     try {
-      if (flight.header.is_null()) {
-        reader.header(record);
-      } else {
-        reader.take(record);
-      }
+      reader.take(record);
     } catch (const std::invalid_argument& error) {
-      fail(line_number, error.what());
+      lines.fail(error.what());
     }
   }
-  if (in.bad()) throw std::runtime_error(log.string() + ": cannot be read to its end");
-  if (flight.header.is_null()) fail(1, "the first line is not a jink-log/1 header: the file is empty");
-  flight.cut_off = broken != 0 ? 1 : 0;
+  flight.lines = lines.lines();
+  flight.cut_off = lines.cut_off() ? 1 : 0;
   return flight;
 }
 

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A recorded flight planned again: the same decisions from its log alone, and every way in which a log can be wrong.
+#include "tools/flight_replay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "config/error.hpp"
+#include "config/scenario.hpp"
+#include "sim/closed_loop.hpp"
+#include "tests/tools/folder.hpp"
+#include "tools/flight_log.hpp"
+#include "tools/summaries.hpp"
+
+namespace jink::tools {
+namespace {
+
+using Json = nlohmann::json;
+using planner::Vec3;
+
+std::string read(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::filesystem::path fly(const Folder& folder, const std::string& scenario_name, int threads) {
+  const auto file = folder.path() / (scenario_name + std::to_string(threads) + ".jsonl");
+  const auto scenario = config::load_scenario(config::config_folder() / "scenarios" / (scenario_name + ".yaml"));
+  const config::Settings settings;
+  FlightLog log(file, scenario_header(scenario, 5, settings), {.wait = true});
+  sim::ClosedLoopOptions options;
+  options.seed = 5;
+  options.threads = threads;
+  options.flight_observers = {&log};
+  options.truth_observers = {&log};
+  (void)sim::fly_closed_loop(scenario, settings, options);
+  log.close();
+  return file;
+}
+
+FlightComparison compare(const std::filesystem::path& log, int threads = 2,
+                         const std::vector<std::string>& overrides = {}) {
+  FlightRecording recording(log);
+  std::vector<std::string> missing;
+  ReplaySettings settings;
+  settings.recorded = config::recorded_settings(recording.source(), recording.parameters(), {}, missing);
+  settings.settings = config::recorded_settings(recording.source(), recording.parameters(), overrides, missing);
+  settings.seed = recording.seed();
+  settings.threads = threads;
+  EXPECT_TRUE(missing.empty());
+  return compare_plans(recording, settings);
+}
+
+TEST(FlightReplay, ARecordedFlightDecidesTheSameAtAnyNumberOfThreads) {
+  const Folder folder;
+  for (const int flown : {1, 4}) {
+    const auto log = fly(folder, "table2-1", flown);
+    for (const int threads : {1, 4}) {
+      const FlightComparison comparison = compare(log, threads);
+      EXPECT_GT(comparison.plans, 20U);
+      EXPECT_TRUE(comparison.differences.empty()) << flown << " threads, again with " << threads;
+    }
+  }
+}
+
+TEST(FlightReplay, OtherParametersDecideOtherwise) {
+  const Folder folder;
+  const auto log = fly(folder, "crossing", 2);
+  EXPECT_TRUE(compare(log).differences.empty());
+  // By way of the planner, of the request, and of how far the searches go.
+  for (const char* change : {"horizon.weight_clearance=5", "horizon.margin=1.2", "horizon.generations=5"}) {
+    const FlightComparison comparison = compare(log, 2, {change});
+    ASSERT_FALSE(comparison.differences.empty()) << change;
+    const auto apart = [](const PlanDifference& d) { return d.max_distance.value_or(0.0) > 0.0; };
+    EXPECT_TRUE(std::all_of(comparison.differences.begin(), comparison.differences.end(), apart)) << change;
+  }
+}
+
+/// A job among `tracks`, with everything in it that a companion could set.
+bridge::PlanJob job(std::uint64_t number, std::vector<planner::Track> tracks) {
+  bridge::PlanJob job;
+  job.number = number;
+  job.begun = 1.0 / 3.0;
+  job.start = 0.7;
+  job.tracks = std::move(tracks);
+  job.request.position = {0.1, 0.2, 2.3};
+  job.request.velocity = {2.0, -0.0, 0.0};
+  job.request.target = {20.0, 0.0, 2.0};
+  job.request.margin = 0.41;
+  job.request.track_acceleration = 0.3;
+  job.request.acceleration_trust = 0.6;
+  return job;
+}
+
+planner::Track sphere(std::uint64_t id, const Vec3& position, const Vec3& velocity, double radius) {
+  return {id, position, velocity, {0.01, -0.02, 0.0}, radius, 0.05, 0.1, 0.03};
+}
+
+/// Plans as a companion's thread does, under a deadline of so many µs, and logs it.
+class RealTimePlans {
+ public:
+  explicit RealTimePlans(const std::filesystem::path& file)
+      : log_(file, {{"mission", "m"}, {"seed", 9}, {"parameters", parameters_of(settings_)}}),
+        planner_(settings_.horizon, settings_.optimizer) {}
+
+  planner::Plan make(bridge::PlanJob job, std::chrono::microseconds time) {
+    bridge::PlanResult result;
+    result.job = std::move(job);
+    result.job.request.tracks = result.job.tracks;
+    const planner::Budget budget{settings_.horizon.generations, std::chrono::steady_clock::now() + time};
+    result.plan = planner_.plan(result.job.request, result.job.previous, 9, result.job.number, budget, pool_);
+    log_.on_plan(result.job.start, result);
+    return result.plan;
+  }
+  void close() { log_.close(); }
+
+ private:
+  config::Settings settings_;
+  FlightLog log_;
+  planner::HorizonPlanner planner_;
+  planner::WorkerPool pool_{2};
+};
+
+// Deadlines from none to plenty, an obstacle that nothing avoids (so that both searches run and are cut), an unbounded
+// volume, a previous plan, the largest id, and a request that cannot be planned.
+TEST(FlightReplay, PlansUnderADeadlineAreRepeated) {
+  const Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  const auto beside = sphere(18446744073709551615U, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8);
+  const auto unavoidable = sphere(2, {16, 0, 2}, {-14, 0, 0}, 6.0);
+  bool two_searches = false, cut = false;
+  std::uint64_t number = 0;
+  planner::TimedPath previous;
+  for (const int microseconds : {-1, 50, 300, 1000, 5000}) {
+    for (const auto& track : {beside, unavoidable}) {
+      bridge::PlanJob next = job(number++, {track});
+      next.previous = previous;
+      const planner::Plan plan = plans.make(std::move(next), std::chrono::microseconds(microseconds));
+      previous = plan.path;
+      two_searches = two_searches || plan.searches[1].schedule > 0;
+      cut = cut || plan.deadline_reached;
+    }
+  }
+  bridge::PlanJob impossible = job(number++, {beside});
+  impossible.request.position.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(plans.make(std::move(impossible), std::chrono::microseconds(100)).status, planner::PlanStatus::kInvalid);
+  plans.close();
+  ASSERT_TRUE(two_searches && cut);
+  for (const int threads : {1, 4}) {
+    const FlightComparison comparison = compare(file, threads);
+    EXPECT_EQ(comparison.plans, number);
+    EXPECT_TRUE(comparison.differences.empty()) << comparison.differences.size() << " of " << number;
+  }
+}
+
+/// A log of one plan, line by line: header, plan.
+std::vector<std::string> one_plan(const Folder& folder) {
+  const auto file = folder.path() / "one.jsonl";
+  RealTimePlans plans(file);
+  plans.make(job(0, {sphere(1, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8)}), std::chrono::seconds(10));
+  plans.close();
+  std::istringstream in(read(file));
+  std::vector<std::string> lines(2);
+  for (std::string& line : lines) std::getline(in, line);
+  return lines;
+}
+
+TEST(FlightReplay, TellsOneBitOfAPath) {
+  const Folder folder;
+  auto lines = one_plan(folder);
+  EXPECT_TRUE(compare(folder.log(lines[0] + "\n" + lines[1] + "\n")).differences.empty());
+  Json plan = Json::parse(lines[1]);
+  double& y = plan["path"][5][2].get_ref<double&>();
+  y = std::nextafter(y, 100.0);
+  const FlightComparison comparison = compare(folder.log(lines[0] + "\n" + plan.dump() + "\n"));
+  ASSERT_EQ(comparison.differences.size(), 1U);
+  EXPECT_EQ(comparison.differences[0].line, 2U);
+  EXPECT_LT(*comparison.differences[0].max_distance, 1e-12);
+  plan = Json::parse(lines[1]);
+  plan["status"] = "blocked";
+  EXPECT_EQ(compare(folder.log(lines[0] + "\n" + plan.dump() + "\n")).differences.size(), 1U);
+}
+
+TEST(FlightReplay, TakesALogWhoseLastLineIsCutOff) {
+  const Folder folder;
+  const auto lines = one_plan(folder);
+  const std::string whole = lines[0] + "\n" + lines[1] + "\n";
+  FlightRecording recording(folder.log(whole + lines[1].substr(0, lines[1].size() / 2)));
+  EXPECT_TRUE(recording.next().has_value());
+  EXPECT_FALSE(recording.next().has_value());
+  EXPECT_TRUE(recording.cut_off());
+}
+
+TEST(FlightReplay, PassesOverWhatIsNoPlanAndCountsIt) {
+  const Folder folder;
+  const auto lines = one_plan(folder);
+  const std::string old = R"({"type":"plan","t":1,"path":[],"ms":1,"status":"reaches"})";
+  FlightRecording recording(folder.log(lines[0] + "\n" + old + "\n\n" + R"({"type":"state","t":1})" + "\n" +
+                                       R"({"type":"mystery"})" + "\n" + lines[1] + "\n"));
+  ASSERT_TRUE(recording.next().has_value());
+  EXPECT_FALSE(recording.next().has_value());
+  EXPECT_EQ(recording.without_inputs(), 1U);
+  EXPECT_EQ(recording.unknown(), 1U);
+  EXPECT_FALSE(recording.cut_off());
+}
+
+std::string error_of(const std::filesystem::path& file) {
+  try {
+    FlightRecording recording(file);
+    while (recording.next()) {
+    }
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    EXPECT_TRUE(text.starts_with(file.string() + ":")) << text;
+    return text.substr(std::min(text.size(), file.string().size()));
+  }
+  return "accepted";
+}
+
+TEST(FlightReplay, NamesTheLineOfABadRecord) {
+  const Folder folder;
+  const auto lines = one_plan(folder);
+  // What is changed (a JSON pointer in the plan), to what, and what the error says.
+  const std::vector<std::array<std::string, 3>> cases = {
+      {"/t", R"("x")", "\"t\" is not a number"},
+      {"/t", "null", "a time is not finite"},
+      {"/number", "-1", "\"number\" is not a whole number"},
+      {"/status", R"("great")", "\"status\" is not one of reaches"},
+      {"/searches", "[[1,1]]", "\"searches\" is not a list of 2"},
+      {"/searches/0", "[5,6]", "no [scheduled, done] generations"},
+      {"/searches/0", "[99999999999,3]", "no [scheduled, done] generations"},
+      {"/searches/0", "[3.5,3]", "no [scheduled, done] generations"},
+      {"/path/3/0", "-1.0", "\"path\" is not a path"},
+      {"/path/3", "[1,2,3]", "\"path\" is not a list of 4 numbers"},
+      {"/from", "7", "has no \"begun\""},
+      {"/from/start", R"("soon")", "\"start\" is not a number"},
+      {"/from/p", "[1,2]", "\"p\" is not a list of 3 numbers"},
+      {"/from/p/1", R"("Inf")", "\"p\" is not a number"},
+      {"/from/vehicle/3", "0.0", "\"vehicle\" holds a limit that is not above 0"},
+      {"/from/vehicle/3", R"("nan")", "\"vehicle\" holds a limit that is not above 0"},
+      {"/from/volume/0/2", "1000.0", "accepted"},
+      {"/from/volume/1/2", R"("nan")", "\"volume\" is not [min, max]"},
+      {"/from/margin", "-0.1", "is below 0"},
+      {"/from/tracks/0", "[1,2,3]", "\"tracks\" is not a list of 14 numbers"},
+      {"/from/tracks/0/0", "1.5", "an id that is not a whole number"},
+      {"/from/previous", "[[0,0,0,0],[-1,0,0,0]]", "\"previous\" is not a path"},
+      {"/from/previous", "{}", "\"previous\" is not a list"},
+  };
+  for (const auto& [pointer, value, error] : cases) {
+    Json plan = Json::parse(lines[1]);
+    plan[Json::json_pointer(pointer)] = Json::parse(value);
+    const std::string said = error_of(folder.log(lines[0] + "\n" + plan.dump() + "\n" + lines[1] + "\n"));
+    EXPECT_NE(said.find(error), std::string::npos) << pointer << " = " << value << ": " << said;
+    EXPECT_TRUE(said == "accepted" || said.starts_with(":2: ")) << said;
+  }
+  EXPECT_EQ(error_of(folder.log(lines[0] + "\n{\"type\":\n" + lines[1] + "\n")), ":2: is not JSON");
+  EXPECT_EQ(error_of(folder.log(lines[0] + "\n[]\n" + lines[1] + "\n")), ":2: is not a JSON object");
+}
+
+TEST(FlightReplay, RefusesAWrongHeader) {
+  const Folder folder;
+  const auto lines = one_plan(folder);
+  const std::vector<std::array<std::string, 3>> cases = {
+      {"/format", R"("jink-log/2")", "format: \"jink-log/2\" is not \"jink-log/1\""},
+      {"/type", R"("plan")", "is not a jink-log/1 header"},
+      {"/seed", "-4", "header \"seed\" is not a whole number"},
+      {"/version", "1", "header \"version\" is not text"},
+      {"/mission", "{}", "header \"mission\" is not text"},
+      {"/parameters", "[]", "header \"parameters\" is not an object"},
+      {"/parameters/horizon.margin", "0.35", "header \"horizon.margin\" is not text"},
+  };
+  for (const auto& [pointer, value, error] : cases) {
+    Json header = Json::parse(lines[0]);
+    header[Json::json_pointer(pointer)] = Json::parse(value);
+    const std::string said = error_of(folder.log(header.dump() + "\n" + lines[1] + "\n"));
+    EXPECT_NE(said.find(error), std::string::npos) << pointer << " = " << value << ": " << said;
+  }
+  EXPECT_NE(error_of(folder.log("")).find("the file is empty"), std::string::npos);
+  EXPECT_NE(error_of(folder.log("\x01\x02")).find("is not a jink-log/1 header"), std::string::npos);
+}
+
+TEST(RecordedSettings, AreTheLogsOwnAndCheckedLikeAFile) {
+  config::Settings settings;
+  settings.horizon.margin = 0.1 + 0.2;
+  const auto values = config::list_settings(settings);
+  std::vector<std::string> missing;
+  EXPECT_EQ(config::list_settings(config::recorded_settings("log:1", values, {}, missing)), values);
+  EXPECT_TRUE(missing.empty());
+  const std::vector<config::SettingText> few{{"horizon.margin", "0.5"}};
+  const auto changed = config::recorded_settings("log:1", few, {"horizon.population=100"}, missing);
+  EXPECT_EQ(changed.horizon.margin, 0.5);
+  EXPECT_EQ(changed.horizon.population, 100);
+  EXPECT_EQ(missing.size(), values.size() - 1);
+  const auto error = [&](const config::SettingText& bad) {
+    try {
+      (void)config::recorded_settings("log:1", {bad}, {}, missing);
+    } catch (const config::ConfigError& complaint) {
+      return std::string(complaint.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_TRUE(error({"horizon.margn", "1"}).starts_with("log:1: key 'horizon.margn': unknown key"));
+  EXPECT_TRUE(error({"horizon.margin", "-1"}).starts_with("log:1: key 'horizon.margin': value '-1' is not in"));
+  EXPECT_NE(error({"horizon.population", "2"}).find("log:1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace jink::tools
