@@ -180,8 +180,8 @@ void FlightLog::write_content(double t, const bridge::PlanResult& result) {
 
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::PlanJob& job) {
-  const auto& [position, velocity, target, volume, vehicle, request_tracks, margin, track_acceleration, trust] =
-      job.request;
+  const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, margin, track_acceleration,
+               trust] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb] = vehicle;
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
   line_.key("p").exact_vector(position).key("v").exact_vector(velocity).key("target").exact_vector(target);
@@ -196,12 +196,27 @@ void FlightLog::add_job(const bridge::PlanJob& job) {
     for (const planner::Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());
     line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age).close(']');
   }
-  line_.close(']').key("previous").open('[');
-  for (const planner::TimedPoint& point : job.previous) {
+  line_.close(']').key("paths").open('[');
+  for (const auto& [id, points, offset, r, off_path, position_sigma, velocity_sigma, age, until] : job.paths) {
+    line_.open('{').key("id").integer(id).key("offset").exact(offset).key("radius").exact(r).key("margin").exact(
+        off_path);
+    line_.key("position_sigma").exact(position_sigma).key("velocity_sigma").exact(velocity_sigma);
+    line_.key("age").exact(age).key("until").exact(until);
+    add_points("points", points);
+    line_.close('}');
+  }
+  line_.close(']');
+  add_points("previous", job.previous);
+  line_.close('}');
+}
+
+void FlightLog::add_points(std::string_view key, const planner::TimedPath& path) {
+  line_.key(key).open('[');
+  for (const planner::TimedPoint& point : path) {
     line_.open('[').exact(point.t).exact(point.position.x());
     line_.exact(point.position.y()).exact(point.position.z()).close(']');
   }
-  line_.close(']').close('}');
+  line_.close(']');
 }
 
 void FlightLog::write_content(double t, const bridge::Setpoint& setpoint) {

@@ -93,6 +93,21 @@ planner::Track track_of(const Json& item) {
           x[12]};
 }
 
+planner::KnownPath known_path_of(const Json& item) {
+  planner::KnownPath path;
+  path.id = count_of(item, "id");
+  path.points = path_of(item, "points");
+  path.offset = exact(member(item, "offset"), "offset");
+  path.radius = exact(member(item, "radius"), "radius");
+  path.margin = exact(member(item, "margin"), "margin");
+  path.position_sigma = exact(member(item, "position_sigma"), "position_sigma");
+  path.velocity_sigma = exact(member(item, "velocity_sigma"), "velocity_sigma");
+  path.age = exact(member(item, "age"), "age");
+  path.until = exact(member(item, "until"), "until");
+  if (!path.well_formed()) refuse("\"paths\" holds a path that none can fly");
+  return path;
+}
+
 bridge::PlanJob job_of(const Json& record, const Json& from) {
   bridge::PlanJob job;
   planner::PathRequest& request = job.request;
@@ -113,6 +128,7 @@ bridge::PlanJob job_of(const Json& record, const Json& from) {
   if (!(request.margin >= 0.0) || !(request.track_acceleration >= 0.0) || !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
+  for (const Json& item : list_of(from, "paths")) job.paths.push_back(known_path_of(item));
   job.previous = path_of(from, "previous");
   return job;
 }
@@ -205,6 +221,7 @@ FlightComparison compare_plans(FlightRecording& recording, const ReplaySettings&
   while (std::optional<RecordedPlan> recorded = recording.next()) {
     bridge::PlanJob& job = recorded->job;
     job.request.tracks = job.tracks;
+    job.request.paths = job.paths;
     change(job.request, settings);
     // Searches go as far as the recorded ones did, unless their length is what was changed.
     const bool by_count = settings.settings.horizon.generations == settings.recorded.horizon.generations &&
