@@ -16,6 +16,7 @@
 namespace jink::bridge {
 namespace {
 
+using planner::Vec3;
 using testing::eventually;
 using Wire = jink_msgs::msg::dds_::Intent_;
 
@@ -147,7 +148,7 @@ TEST_F(DdsIntentsTest, RefusesAndCountsWhatIsNoIntent) {
   Payload endless = good;  // says that it has four billion points
   const std::size_t count_at = good.size() - 2 * 32 - 4;
   for (std::size_t i = 0; i < 4; ++i) endless[count_at + i] = 0xff;
-  const Payload cut(good.begin(), good.begin() + 40);
+  Payload cut(good.begin(), good.begin() + 40);
   Wire ned = wire();
   ned.header().frame_id("ned");
   Wire bad = wire();
@@ -161,9 +162,9 @@ TEST_F(DdsIntentsTest, RefusesAndCountsWhatIsNoIntent) {
   encode(bad, of_bad);
   encode(half, of_half);
   encode(long_one, of_long);
-  for (const Payload* payload : {&endless, &cut, &of_ned, &of_bad, &of_half, &of_long}) {
+  for (const Payload& payload : {endless, cut, of_ned, of_bad, of_half, of_long}) {
     const std::uint64_t before = ear_.status().refused;
-    EXPECT_TRUE(until([&] { return ear_.status().refused > before; }, [&] { (void)mouth.write(*payload); }));
+    EXPECT_TRUE(until([&] { return ear_.status().refused > before; }, [&] { (void)mouth.write(payload); }));
     EXPECT_FALSE(ear_.status().last_refusal.empty());
   }
   IntentMessage heard;

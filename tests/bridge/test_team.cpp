@@ -248,10 +248,10 @@ TEST(Team, TellsThePathThatWaitsForItsStartWithoutPointsTooClose) {
   Hearing h;
   SetpointStream stream =
       stream_on({{9.0, {0, 2, 3}, Vec3::Zero(), Vec3::Zero()}, {30.0, {21, 2, 3}, Vec3::Zero(), Vec3::Zero()}});
-  for (int plan = 0; plan < 4; ++plan) {
+  for (const double plan : {0.0, 1.0, 2.0, 3.0}) {
     const double start = 10.2 + 0.1 * plan;
     stream.follow({{start, {start - 9.0, 2, 3}, Vec3::Zero(), Vec3::Zero()},
-                   {start + 20.0, {start + 11.0, 2 + plan, 3}, Vec3::Zero(), Vec3::Zero()}});
+                   {start + 20.0, {start + 11.0, 2.0 + plan, 3}, Vec3::Zero(), Vec3::Zero()}});
   }
   h.team.tell(10.0, own(), &stream, 4);
   const Intent& said = h.transport.sent.back();
@@ -313,7 +313,8 @@ struct TeamCompanion {
     mission.waypoints = {{20, 0, 5}};
     mission.tracks.required = false;
     mission.intents = on;
-    companion.emplace(mission, config::Settings{}, CompanionParts{link, tracks, planner, {&recorder}, nullptr, &intents});
+    companion.emplace(mission, config::Settings{},
+                      CompanionParts{link, tracks, planner, {&recorder}, nullptr, &intents});
   }
   void run(double from, double to) {
     for (double t = from; t < to; t += 0.02) {
