@@ -145,8 +145,8 @@ TEST_F(DdsIntentsTest, RefusesAndCountsWhatIsNoIntent) {
   PayloadWriter mouth(there_, kIntentsTopic, kIntentsType);
   Payload good;
   encode(wire(), good);
-  Payload endless = good;  // says that it has four billion points
-  const std::size_t count_at = good.size() - 2 * 32 - 4;
+  Payload endless = good;                                 // says that it has four billion points
+  const std::size_t count_at = good.size() - 2 * 32 - 8;  // and 4 bytes of padding
   for (std::size_t i = 0; i < 4; ++i) endless[count_at + i] = 0xff;
   Payload cut(good.begin(), good.begin() + 40);
   Wire ned = wire();

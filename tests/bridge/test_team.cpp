@@ -125,6 +125,7 @@ TEST(Team, LearnsAClockThatIsAnHourOff) {
     const auto paths = h.hear(t, message(t, 3600.0 + (i == 3 ? 0.15 : 0.0), intent()));
     ASSERT_EQ(paths.size(), 1U);
     EXPECT_NEAR(paths[0].age, i == 3 ? 0.15 : 0.0, 1e-9);  // only what exceeds the smallest is delay
+    EXPECT_NEAR(paths[0].margin, 0.2 + 0.1 * 2.0, 1e-9);   // the rest, at 2 m/s, is not known
   }
   EXPECT_TRUE(h.news(11.0, "team_clock"));
 }
