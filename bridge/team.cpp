@@ -11,20 +11,28 @@ namespace {
 using planner::TimedPath;
 using planner::TimedPoint;
 
-constexpr double kDoubt = 0.03;       // m/s, how a path is doubted from the start: it may be planned anew
-constexpr double kSilentDoubt = 0.4;  // m/s, and while nothing more is heard
-constexpr double kAlive = 0.5;        // s, since its last message, within which a vehicle is surely there
-constexpr double kLeastMargin = 0.1;  // m
-constexpr double kUnledMargin = 0.5;  // m, of a vehicle that follows nothing of ours
-constexpr double kMostMargin = 2.0;   // m
-constexpr double kForget = 3.0;       // s, in which a deviation fades
-constexpr double kOnTheWay = 0.7;     // m from a place to hold, beyond which the way there is told
-constexpr double kWaySpeed = 1.0;     // m/s, taken for it: take-off is about that fast
-constexpr double kLeastStep = 0.01;   // s, between points told
-constexpr double kDrift = 1.0;        // s
+constexpr double kDoubt = 0.03;        // m/s, how a path is doubted from the start: it may be planned anew
+constexpr double kSilentDoubt = 0.4;   // m/s, and while nothing more is heard
+constexpr double kAlive = 0.5;         // s, since its last message, within which a vehicle is surely there
+constexpr double kUnknownDelay = 0.1;  // s, that a message may have taken where only changes of its delay are known
+constexpr double kLeastMargin = 0.1;   // m
+constexpr double kUnledMargin = 0.5;   // m, of a vehicle that follows nothing of ours
+constexpr double kMostMargin = 2.0;    // m
+constexpr double kForget = 3.0;        // s, in which a deviation fades
+constexpr double kOnTheWay = 0.7;      // m from a place to hold, beyond which the way there is told
+constexpr double kWaySpeed = 1.0;      // m/s, taken for it: take-off is about that fast
+constexpr double kLeastStep = 0.01;    // s, between points told
+constexpr double kDrift = 1.0;         // s
 
 std::string name_of(std::uint64_t vehicle) {
   return "vehicle " + std::to_string(system_of(vehicle));
+}
+
+/// The largest speed on a path.
+double fastest(const TimedPath& path) {
+  planner::KnownPath known;
+  known.points = path;
+  return known.fastest();
 }
 
 /// The path up to `until`, without points that follow another at once, as they do where one plan takes over from
@@ -98,6 +106,7 @@ void Team::take(const IntentMessage& message, const VehicleState& own) {
   for (TimedPoint& point : peer.path) point.t += told;
   peer.radius = message.intent.radius;
   peer.margin = message.intent.margin;
+  if (peer.clock.off()) peer.margin += kUnknownDelay * fastest(peer.path);
 }
 
 void Team::forget_the_silent(double now) {

@@ -40,8 +40,10 @@ class Team {
   /// must outlive the team.
   Team(IntentTransport& transport, double radius, double coast_s);
 
-  /// Takes in what has come. An intent counts from its stamp, as StampClock believes it. One whose place is not known,
-  /// because its sender or this vehicle does not know its origin, is dropped and reported, never guessed.
+  /// Takes in what has come. An intent counts from its stamp, as StampClock believes it; where that knows the changes
+  /// of the delay alone, the vehicle may be farther off its path by what it flies in a tenth of a second. One whose
+  /// place is not known, because its sender or this vehicle does not know its origin, is dropped and reported, never
+  /// guessed.
   void listen(double now, const VehicleState& own);
 
   /// The others' paths for a plan that begins at `start`, of which they are valid at time 0: on its path each, with an

@@ -173,7 +173,7 @@ struct Member {
         listener(flown),
         planner({settings.horizon, settings.optimizer, options.seed, options.threads},
                 1e-3 * settings.companion.planner_latency_ms),
-        companion(mission_of(vehicle, options), settings, {link, tracks, planner, {&listener}, &transport}) {}
+        companion(mission_of(vehicle, options), settings, {link, tracks, planner, {&listener}, nullptr, &transport}) {}
 
   Vehicle vehicle;
   sim::Autopilot autopilot;

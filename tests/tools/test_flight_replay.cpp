@@ -114,6 +114,7 @@ class RealTimePlans {
     bridge::PlanResult result;
     result.job = std::move(job);
     result.job.request.tracks = result.job.tracks;
+    result.job.request.paths = result.job.paths;
     const planner::Budget budget{settings_.horizon.generations, std::chrono::steady_clock::now() + time};
     result.plan = planner_.plan(result.job.request, result.job.previous, 9, result.job.number, budget, pool_);
     log_.on_plan(result.job.start, result);
@@ -159,6 +160,41 @@ TEST(FlightReplay, PlansUnderADeadlineAreRepeated) {
     EXPECT_EQ(comparison.plans, number);
     EXPECT_TRUE(comparison.differences.empty()) << comparison.differences.size() << " of " << number;
   }
+}
+
+// Another vehicle's path decides, and all of it is recorded: without it, or with its end a little later, the plan is
+// another one.
+TEST(FlightReplay, PlansAmongATeamsPathsAreRepeated) {
+  const Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  bridge::PlanJob next = job(0, {});
+  planner::KnownPath path;
+  path.id = 18446744073709551615U;
+  path.points = {{1.0 / 3.0, {12, 0.1, 2}, Vec3::Zero(), Vec3::Zero()}, {6.1, {2, 0.2, 2}, Vec3::Zero(), Vec3::Zero()}};
+  path.offset = 0.7;
+  path.radius = 0.8;
+  path.margin = 0.1;
+  path.position_sigma = 0.05;
+  path.velocity_sigma = 0.03;
+  path.age = 0.2;
+  next.paths = {path};
+  const planner::Plan plan = plans.make(std::move(next), std::chrono::seconds(10));
+  plans.close();
+  ASSERT_TRUE(plan.verification.free());
+  EXPECT_EQ(plan.verification.nearest_id, path.id);
+  EXPECT_TRUE(compare(file).differences.empty());
+  std::istringstream in(read(file));
+  std::string header, line;
+  std::getline(in, header);
+  std::getline(in, line);
+  Json changed = Json::parse(line);
+  changed["from"]["paths"][0]["points"][1][0] = 7.5;
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  changed["from"]["paths"] = Json::array();
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  changed["from"]["paths"] = Json::array({{{"id", 1}, {"points", Json::array()}}});
+  EXPECT_THROW(compare(folder.log(header + "\n" + changed.dump() + "\n")), std::runtime_error);
 }
 
 /// A log of one plan, line by line: header, plan.
