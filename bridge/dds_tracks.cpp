@@ -54,6 +54,21 @@ void to_wire(const Vec3& v, Wire& wire) {
 
 }  // namespace
 
+std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
+  DecodedTracks message;
+  const bool whole = decode(payload, [&](CdrInput& input) {
+    const StampedFrame header = take_header(input);
+    message.frame_id = header.frame_id;
+    message.stamp_unix_s = header.stamp_unix_s;
+    const std::uint32_t count = input.take_length(kWireTrack_bytes);
+    TrackSieve sieve(message.tracks, count);
+    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
+    message.why = sieve.why();
+    return true;
+  });
+  return whole ? std::optional(std::move(message)) : std::nullopt;
+}
+
 class DdsTrackReader::Impl {
  public:
   Impl(DdsNode& node, const Clock& clock)
@@ -76,26 +91,17 @@ class DdsTrackReader::Impl {
  private:
   // The payload as a message into the inbox, or refused. On Fast DDS's thread.
   void accept(const Payload& payload, std::uint64_t writer) {
-    TrackMessage message;
-    message.writer = writer;
-    message.received = clock_.now();
-    StampedFrame header;
-    std::string why;
-    const bool whole = decode(payload, [&](CdrInput& input) {
-      header = take_header(input);
-      const std::uint32_t count = input.take_length(kWireTrack_bytes);
-      TrackSieve sieve(message, count);
-      for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
-      why = sieve.why();
-      return true;
-    });
-    if (!whole) {
+    const double received = clock_.now();
+    std::optional<DecodedTracks> message = decode_obstacle_tracks(payload);
+    if (!message) {
       ++malformed_;
-    } else if (header.frame_id != "map" && header.frame_id != "ned") {
-      inbox_.refuse_frame("frame_id '" + printable(header.frame_id) + "' is neither 'map' nor 'ned'");
+    } else if (message->frame_id != "map" && message->frame_id != "ned") {
+      inbox_.refuse_frame("frame_id '" + printable(message->frame_id) + "' is neither 'map' nor 'ned'");
     } else {
-      message.stamp_age = system_time() - header.stamp_unix_s;
-      inbox_.put(std::move(message), why);
+      message->tracks.writer = writer;
+      message->tracks.received = received;
+      message->tracks.stamp_age = system_time() - message->stamp_unix_s;
+      inbox_.put(std::move(message->tracks), message->why);
     }
   }
 
