@@ -88,6 +88,10 @@ DdsNode::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantL
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   }
   if (publisher_ == nullptr || subscriber_ == nullptr) {
+    if (participant_ != nullptr) {
+      participant_->delete_contained_entities();
+      factory->delete_participant(participant_);
+    }
     throw std::runtime_error("DDS domain " + std::to_string(domain) + ": Fast DDS cannot open its transports");
   }
 }

@@ -90,6 +90,15 @@ WirePosition position_of(const sim::Autopilot& autopilot, const EstimateJumps& j
 
 }  // namespace
 
+const EstimateJumps& JumpWatch::update(std::uint8_t counter, const sim::Motion& estimated, double dt) {
+  if (position_ && counter != jumps_.horizontal) {
+    jumps_.newest = estimated.position - *position_ - dt * estimated.velocity;
+  }
+  jumps_.horizontal = jumps_.vertical = counter;
+  position_ = estimated.position;
+  return jumps_;
+}
+
 class SimDds::Impl {
  public:
   Impl(bridge::DdsNode& node, const std::string& name_space)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bridge/dds_node.hpp"
@@ -16,6 +17,19 @@ struct EstimateJumps {
   std::uint8_t horizontal = 0;                   ///< how many so far; wraps
   std::uint8_t vertical = 0;                     ///< likewise
   planner::Vec3 newest = planner::Vec3::Zero();  ///< the shift of the newest of each, ENU
+};
+
+/// Tells the jumps from an estimator's reset counter, which says when, and its motion, which says how far. Not
+/// thread-safe.
+class JumpWatch {
+ public:
+  /// `counter` goes up by one, and around, with each jump; `estimated` is the motion `dt` s after the one before. What
+  /// the position moved beyond its velocity is the jump.
+  const EstimateJumps& update(std::uint8_t counter, const sim::Motion& estimated, double dt);
+
+ private:
+  EstimateJumps jumps_;
+  std::optional<planner::Vec3> position_;  // the one before
 };
 
 /// Publishes VehicleLocalPosition (version 1, vehicle_local_position_v1, best effort, transient local) and takes

@@ -66,6 +66,7 @@ def main():
             faults.append(f"{file.name}: {fields}\n  but bridge/idl has {struct}")
         if f"msg/{file.name}" not in listed:
             faults.append(f"{file.name} is not in the package's CMakeLists.txt")
+    faults += [f"{name} is listed but not there" for name in sorted(listed) if not (package / name).exists()]
     for name in structs:
         stem = re.fullmatch(r"jink_msgs::msg::dds_::(\w+)_", name)
         if stem and not (package / "msg" / f"{stem[1]}.msg").exists():

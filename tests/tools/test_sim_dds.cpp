@@ -27,6 +27,22 @@ using jink::planner::Vec3;
 using jink::sim::Autopilot;
 using jink::tools::SimDds;
 
+TEST(JumpWatch, TellsAJumpFromMotion) {
+  jink::tools::JumpWatch watch;
+  jink::sim::Motion motion;
+  motion.velocity = {2.0, 0.0, 0.0};
+  EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
+  motion.position = {0.2, 0.0, 0.0};
+  EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
+  motion.position = {3.4, 0.0, -1.0};  // 0.2 m flown, 3 m jumped
+  const jink::tools::EstimateJumps jumps = watch.update(0, motion, 0.1);
+  EXPECT_EQ(jumps.horizontal, 0);
+  EXPECT_EQ(jumps.vertical, 0);
+  EXPECT_LT((jumps.newest - Vec3(3.0, 0.0, -1.0)).norm(), 1e-12);
+  motion.position.x() += 0.2;
+  EXPECT_EQ(watch.update(0, motion, 0.1).newest, jumps.newest);
+}
+
 class NoLink final : public jink::bridge::VehicleLink {
  public:
   VehicleState state() override { return {}; }
