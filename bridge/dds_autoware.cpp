@@ -129,8 +129,8 @@ Track take_object(CdrInput& input) {
 
 }  // namespace
 
-std::optional<AutowareMessage> decode_tracked_objects(std::span<const std::uint8_t> payload) {
-  AutowareMessage message;
+std::optional<DecodedTracks> decode_tracked_objects(std::span<const std::uint8_t> payload) {
+  DecodedTracks message;
   const bool whole = decode(payload, [&](CdrInput& input) {
     const StampedFrame header = take_header(input);
     message.frame_id = header.frame_id;
@@ -168,7 +168,7 @@ class DdsAutowareReader::Impl {
   // On Fast DDS's thread.
   void accept(const Payload& payload, std::uint64_t writer) {
     const double received = clock_.now();
-    std::optional<AutowareMessage> message = decode_tracked_objects(payload);
+    std::optional<DecodedTracks> message = decode_tracked_objects(payload);
     if (!message) {
       ++malformed_;
     } else if (message->frame_id != "map") {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "bridge/clock.hpp"
 #include "bridge/dds_node.hpp"
@@ -17,14 +16,6 @@ namespace jink::bridge {
 /// ROS 2: /perception/object_recognition/tracking/objects
 inline constexpr const char* kAutowareTopic = "rt/perception/object_recognition/tracking/objects";
 inline constexpr const char* kAutowareType = "autoware_perception_msgs::msg::dds_::TrackedObjects_";
-
-/// One TrackedObjects message as it was sent, but for its frame, which the caller checks.
-struct AutowareMessage {
-  std::string frame_id;
-  double stamp_unix_s = 0.0;
-  TrackMessage tracks;  ///< writer, received and stamp_age are the caller's
-  std::string why;      ///< of the last object left out; empty when none was
-};
 
 /// Decodes a payload (encapsulation and CDR); nothing where it is no TrackedObjects. Pure.
 ///
@@ -37,7 +28,7 @@ struct AutowareMessage {
 /// unknown
 /// (-1). Classification and existence probability do not matter: all that is
 /// tracked is avoided. [autoware_msgs, autoware_perception_msgs/msg]
-[[nodiscard]] std::optional<AutowareMessage> decode_tracked_objects(std::span<const std::uint8_t> payload);
+[[nodiscard]] std::optional<DecodedTracks> decode_tracked_objects(std::span<const std::uint8_t> payload);
 
 /// Reads the topic best effort, volatile, keep last; Autoware publishes reliable, volatile, which matches. Only
 /// messages in the frame `map` are taken, which must be ENU about the autopilot's local origin; others are refused

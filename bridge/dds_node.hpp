@@ -24,6 +24,8 @@ class DdsNode {
   [[nodiscard]] int domain() const;
 
   class Impl;  ///< bridge/dds_support.hpp
+  /// For what watches discovery itself (dds_discovery).
+  explicit DdsNode(std::unique_ptr<Impl> impl);
   [[nodiscard]] Impl& impl() { return *impl_; }
 
  private:

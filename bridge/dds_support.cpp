@@ -74,7 +74,7 @@ bool PayloadType::getKey(void* /*data*/, eprosima::fastrtps::rtps::InstanceHandl
   return false;  // no keys in ROS 2's types
 }
 
-DdsNode::Impl::Impl(int domain, const std::string& name) : domain_(domain) {
+DdsNode::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery) : domain_(domain) {
   if (domain < 0 || domain > kMaxDdsDomain) {
     throw std::runtime_error("dds.domain " + std::to_string(domain) + " is outside [0, 232]");
   }
@@ -85,12 +85,17 @@ DdsNode::Impl::Impl(int domain, const std::string& name) : domain_(domain) {
   auto& transport = qos.transport();
   if (transport.listen_socket_buffer_size == 0) transport.listen_socket_buffer_size = kSocketBuffer_bytes;
   if (transport.send_socket_buffer_size == 0) transport.send_socket_buffer_size = kSocketBuffer_bytes;
-  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(domain), qos);
+  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(domain), qos, discovery,
+                                             dds::StatusMask::none());  // samples and matches are the endpoints' own
   if (participant_ != nullptr) {
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   }
   if (publisher_ == nullptr || subscriber_ == nullptr) {
+    if (participant_ != nullptr) {
+      participant_->delete_contained_entities();
+      factory->delete_participant(participant_);
+    }
     throw std::runtime_error("DDS domain " + std::to_string(domain) + ": Fast DDS cannot open its transports");
   }
 }
@@ -113,6 +118,7 @@ dds::Topic* DdsNode::Impl::topic(const std::string& name, const std::string& typ
 }
 
 DdsNode::DdsNode(int domain, const std::string& name) : impl_(std::make_unique<Impl>(domain, name)) {}
+DdsNode::DdsNode(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 DdsNode::~DdsNode() = default;
 int DdsNode::domain() const {
   return impl_->domain();

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -51,7 +52,8 @@ class PayloadType final : public dds::TopicDataType {
 /// The participant. A topic or type that is asked for again is the same one; they live as long as the node.
 class DdsNode::Impl {
  public:
-  Impl(int domain, const std::string& name);
+  /// `discovery`, where given, hears of the domain's participants and endpoints; it must outlive this.
+  Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery = nullptr);
   ~Impl();
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;

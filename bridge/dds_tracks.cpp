@@ -54,20 +54,19 @@ void to_wire(const Vec3& v, Wire& wire) {
 
 }  // namespace
 
-std::optional<ObstacleTracksMessage> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
-  ObstacleTracksMessage message;
+std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
+  DecodedTracks message;
   const bool whole = decode(payload, [&](CdrInput& input) {
-    StampedFrame header = take_header(input);
+    const StampedFrame header = take_header(input);
+    message.frame_id = header.frame_id;
     message.stamp_unix_s = header.stamp_unix_s;
-    message.frame_id = std::move(header.frame_id);
     const std::uint32_t count = input.take_length(kWireTrack_bytes);
     TrackSieve sieve(message.tracks, count);
-    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, message.frame_id == "ned"));
+    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
     message.why = sieve.why();
     return true;
   });
-  if (!whole) return std::nullopt;
-  return message;
+  return whole ? std::optional(std::move(message)) : std::nullopt;
 }
 
 class DdsTrackReader::Impl {
@@ -94,7 +93,7 @@ class DdsTrackReader::Impl {
   // The payload as a message into the inbox, or refused. On Fast DDS's thread.
   void accept(const Payload& payload, std::uint64_t writer) {
     const double received = clock_.now();
-    std::optional<ObstacleTracksMessage> message = decode_obstacle_tracks(payload);
+    std::optional<DecodedTracks> message = decode_obstacle_tracks(payload);
     if (!message) {
       ++malformed_;
     } else if (message->frame_id != "map" && message->frame_id != "ned") {

@@ -18,16 +18,9 @@ namespace jink::bridge {
 inline constexpr const char* kTracksTopic = "rt/jink/obstacle_tracks";  ///< ROS 2: /jink/obstacle_tracks
 inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks_";
 
-/// One ObstacleTracks message as it was sent, but for its frame, which the caller checks.
-struct ObstacleTracksMessage {
-  std::string frame_id;  ///< where it is "ned" the tracks have been turned to ENU
-  double stamp_unix_s = 0.0;
-  TrackMessage tracks;  ///< writer, received and stamp_age are the caller's
-  std::string why;      ///< of the last track left out; empty when none was
-};
-
-/// Decodes a payload (encapsulation and CDR); nothing where it is no ObstacleTracks. Pure.
-[[nodiscard]] std::optional<ObstacleTracksMessage> decode_obstacle_tracks(std::span<const std::uint8_t> payload);
+/// Decodes a payload (encapsulation and CDR); nothing where it is no ObstacleTracks. Tracks in the frame `ned` come out
+/// in ENU. Pure.
+[[nodiscard]] std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload);
 
 /// Reads the topic best effort, volatile, keep last, so that a writer of any reliability and durability matches; by
 /// the node's transports. Messages are checked and converted to ENU on Fast DDS's

@@ -44,6 +44,14 @@ class TrackSieve {
   std::uint64_t bad_id_ = 0;
 };
 
+/// One message of tracks as its payload says it; its frame is the caller's to check.
+struct DecodedTracks {
+  std::string frame_id;
+  double stamp_unix_s = 0.0;
+  TrackMessage tracks;  ///< writer, received and stamp_age are the caller's
+  std::string why;      ///< TrackSieve::why()
+};
+
 /// Messages on their way to poll(), and what was refused. When nobody polls, the oldest go. Safe from any thread.
 class TrackInbox {
  public:

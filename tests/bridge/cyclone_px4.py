@@ -84,6 +84,7 @@ def main():
     modes = DataReader(participant, Topic(participant, prefix + "in/offboard_control_mode", OffboardControlMode),
                        qos=read)
 
+    print("ready", flush=True)
     mode = None
     while not select.select([sys.stdin], [], [], 0.02)[0]:
         writer.write(position(cls, fields))

@@ -19,7 +19,6 @@
 
 namespace {
 
-using jink::bridge::AutowareMessage;
 using jink::bridge::DdsAutowareReader;
 using jink::bridge::DdsNode;
 using jink::bridge::decode_tracked_objects;
