@@ -6,9 +6,7 @@
 
 namespace jink::bridge {
 
-namespace {
-
-// Null when the track is usable, else what is wrong with it. Each comparison is false for NaN.
+// Each comparison is false for NaN.
 const char* refusal(const planner::Track& t) {
   using L = TrackLimits;
   if (!(t.position.norm() <= L::kPosition)) return "position";
@@ -19,8 +17,6 @@ const char* refusal(const planner::Track& t) {
   if (!(t.velocity_sigma >= 0.0 && t.velocity_sigma <= L::kSigma)) return "velocity_sigma";
   return nullptr;
 }
-
-}  // namespace
 
 TrackSieve::TrackSieve(TrackMessage& message, std::size_t stated) : message_(message), stated_(stated) {
   message_.tracks.reserve(std::min(stated, TrackLimits::kTracksPerMessage));

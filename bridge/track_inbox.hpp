@@ -21,9 +21,13 @@ struct TrackLimits {
   static constexpr double kAcceleration = 1e3;
   static constexpr double kRadius = 1e3;  ///< and above 0
   static constexpr double kSigma = 1e3;   ///< position and velocity; not negative
-  static constexpr std::size_t kTracksPerMessage = 4096;
+  static constexpr std::size_t kTracksPerMessage = 20000;
   static constexpr std::size_t kQueuedMessages = 64;
 };
+
+/// Null when the track is usable, else what is wrong with it, by the name of its field. The one check of tracks, for
+/// every source and before the planner.
+[[nodiscard]] const char* refusal(const planner::Track& track);
 
 /// Takes the tracks of one message in, one by one; what is non-finite, absurd or beyond kTracksPerMessage stays out and
 /// is counted in message.dropped. Pure.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "bridge/track_inbox.hpp"
 #include "planner/obstacle_motion.hpp"
 
 namespace jink::bridge {
@@ -17,12 +18,6 @@ constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be of
 constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
 constexpr double kSelfLeaves = 2.0;  // times the distance that makes a track its own, at which it no longer is
 
-// What a track may be, about what an outdoor flight meets.
-constexpr double kFastest = 1000.0;  // m/s
-constexpr double kHardest = 1000.0;  // m/s²
-constexpr double kBiggest = 1000.0;  // m, radius
-constexpr double kVaguest = 1000.0;  // m, m/s: standard deviations
-
 // The first of its id keeps it, later ones get the next that is free.
 void make_ids_unique(std::vector<planner::Track>& tracks) {
   std::unordered_set<std::uint64_t> used;
@@ -33,13 +28,6 @@ void make_ids_unique(std::vector<planner::Track>& tracks) {
 }
 
 }  // namespace
-
-bool plausible(const planner::Track& track) {  // each comparison is false for NaN
-  return track.position.norm() <= TrackTable::kFarthest && track.velocity.norm() <= kFastest &&
-         track.acceleration.norm() <= kHardest && track.radius > 0.0 && track.radius <= kBiggest &&
-         track.position_sigma >= 0.0 && track.position_sigma <= kVaguest && track.velocity_sigma >= 0.0 &&
-         track.velocity_sigma <= kVaguest;
-}
 
 // How old the message's measurement was at reception; nothing where it is too old to say anything of the present.
 std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
@@ -85,7 +73,7 @@ void TrackTable::ingest(const TrackMessage& message) {
   if (message.watches) newest_message_ = std::max(newest_message_, message.received);
   writers_[message.writer].believed = message.received;
   for (const planner::Track& track : message.tracks) {
-    if (!plausible(track)) {
+    if (refusal(track) != nullptr) {
       ++counts_.invalid_tracks;
       continue;
     }

@@ -20,13 +20,9 @@ struct TrackTableCounts {
   std::uint64_t clock_offsets = 0;    ///< messages whose stamp could not be believed
   std::uint64_t late_messages = 0;    ///< messages left out because they came too late
   std::uint64_t frozen_messages = 0;  ///< messages left out because what moves had not moved since the one before
-  std::uint64_t invalid_tracks = 0;   ///< tracks left out: a number that is none, or beyond kFarthest and the like
+  std::uint64_t invalid_tracks = 0;   ///< tracks left out: refusal() of track_inbox says why
   std::uint64_t surplus_tracks = 0;   ///< tracks left out because the table was full
 };
-
-/// Whether a track's numbers are finite and of a size that an obstacle can have. The last check before the planner, for
-/// every source.
-[[nodiscard]] bool plausible(const planner::Track& track);
 
 /// Tracks of several writers, each with its own identities; nothing is fused, so an obstacle that two writers see is
 /// avoided twice. Not thread-safe.
@@ -61,7 +57,6 @@ class TrackTable {
   [[nodiscard]] int silent_writers(double now, double timeout_s) const;
 
   static constexpr std::size_t kMost = 20000;    ///< living tracks
-  static constexpr double kFarthest = 1e5;       ///< m from the origin
   static constexpr double kSelfTime = 0.2;       ///< s
   static constexpr double kForgetWriter = 60.0;  ///< s of silence, after which a writer is taken for ended
 

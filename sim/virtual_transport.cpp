@@ -56,20 +56,6 @@ bridge::BatteryState bridge_battery(BatteryLevel level) {
   return bridge::BatteryState::kUnknown;
 }
 
-/// Within the reader's limits; false for NaN.
-bool within(const Vec3& v, double limit) {
-  return v.allFinite() && v.cwiseAbs().maxCoeff() <= limit;
-}
-
-/// As the DDS reader decides it.
-bool usable(const planner::Track& track) {
-  using bridge::TrackLimits;
-  const auto sigma_ok = [](double sigma) { return sigma >= 0.0 && sigma <= TrackLimits::kSigma; };
-  return within(track.position, TrackLimits::kPosition) && within(track.velocity, TrackLimits::kVelocity) &&
-         within(track.acceleration, TrackLimits::kAcceleration) && track.radius > 0.0 &&
-         track.radius <= TrackLimits::kRadius && sigma_ok(track.position_sigma) && sigma_ok(track.velocity_sigma);
-}
-
 }  // namespace
 
 VirtualLink::VirtualLink(Autopilot& autopilot, std::uint64_t seed)
@@ -229,21 +215,14 @@ bool VirtualTracks::poll(bridge::TrackMessage& message) {
   return true;
 }
 
-void VirtualTracks::accept(TrackMessage& measured, bridge::TrackMessage& message) {
-  const std::size_t sent = measured.tracks.size();
-  if (sent > bridge::TrackLimits::kTracksPerMessage) {
-    measured.tracks.resize(bridge::TrackLimits::kTracksPerMessage);
-    status_.last_refusal = "a message of " + std::to_string(sent) + " tracks";
-  }
-  std::erase_if(measured.tracks, [this](const planner::Track& track) {
-    if (usable(track)) return false;
-    status_.last_refusal = "track " + std::to_string(track.id) + " is not finite or out of range";
-    return true;
-  });
-  const auto dropped = static_cast<std::uint32_t>(sent - measured.tracks.size());
+// As a reader behind a real transport does it.
+void VirtualTracks::accept(const TrackMessage& measured, bridge::TrackMessage& message) {
+  message = {1, now_, now_ - measured.stamp - measured.clock_offset, {}, 0};
+  bridge::TrackSieve sieve(message, measured.tracks.size());
+  for (const planner::Track& track : measured.tracks) sieve.add(track);
   ++status_.messages;
-  status_.dropped_tracks += dropped;
-  message = {1, now_, now_ - measured.stamp - measured.clock_offset, std::move(measured.tracks), dropped};
+  status_.dropped_tracks += message.dropped;
+  if (const std::string why = sieve.why(); !why.empty()) status_.last_refusal = why;
 }
 
 }  // namespace jink::sim

@@ -94,7 +94,7 @@ class VirtualTracks final : public bridge::TrackSource {
   [[nodiscard]] bridge::TrackSourceStatus status() const override { return status_; }
 
  private:
-  void accept(TrackMessage& measured, bridge::TrackMessage& message);
+  void accept(const TrackMessage& measured, bridge::TrackMessage& message);
 
   const World& world_;
   const FaultTimeline& timeline_;
