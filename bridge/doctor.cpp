@@ -116,6 +116,12 @@ void inspect_traffic(const config::Mission& mission, const LinkFindings& heard, 
   }
 }
 
+// By the severity that StatusTexts puts in front.
+Level text_level(const std::string& text) {
+  const bool harmless = text.starts_with("info: ") || text.starts_with("notice: ") || text.starts_with("debug: ");
+  return harmless ? Level::kOk : Level::kWarning;
+}
+
 void inspect_vehicle(const LinkFindings& heard, std::vector<Check>& checks) {
   const VehicleState& s = heard.state;
   const bool sound = s.health.empty();
@@ -157,7 +163,8 @@ void inspect_vehicle(const LinkFindings& heard, std::vector<Check>& checks) {
   }
   checks.push_back(mode);
   for (const LinkNotice& notice : heard.notices) {
-    if (notice.name == "autopilot_text") checks.push_back({Level::kWarning, "autopilot says", notice.detail, ""});
+    if (notice.name == "autopilot_text")
+      checks.push_back({text_level(notice.detail), "autopilot says", notice.detail, ""});
   }
 }
 

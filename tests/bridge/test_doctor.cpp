@@ -150,6 +150,14 @@ TEST(Doctor, NamesTheOneThingThatIsWrongWithTheVehicle) {
   }
 }
 
+TEST(Doctor, RepeatsWhatTheAutopilotSays) {
+  LinkFindings h = healthy();
+  h.notices = {{"autopilot_text", "info: Ready for takeoff!"}, {"second_autopilot", "said elsewhere"}};
+  const auto checks = inspect_link(mission(), h);
+  EXPECT_EQ(bad_ones(checks), "");
+  EXPECT_EQ(find(checks, "autopilot says").finding, "info: Ready for takeoff!");
+}
+
 TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
   Mission m = mission();
   m.state = jink::config::Transport::kDds;
