@@ -98,7 +98,7 @@ std::optional<FlightMode> Autopilot::battery_failsafe() const {
 
 void Autopilot::update_battery() {
   const BatteryLevel level = battery_level();
-  if (level <= reported_battery_) return;
+  if (level < BatteryLevel::kLow || level <= reported_battery_) return;
   reported_battery_ = level;
   report(level == BatteryLevel::kLow ? Severity::kWarning : Severity::kCritical, battery_text(level));
   if (!armed_ || level < BatteryLevel::kCritical) return;

@@ -138,6 +138,16 @@ TEST(BatteryFault, ByDefaultItOnlyWarns) {
   EXPECT_TRUE(flight.said("Emergency battery"));
 }
 
+TEST(BatteryFault, OneThatIsNotKnownAndThenFullIsNoWarning) {
+  Flight flight(instant_options());
+  flight.autopilot.set_battery(kNan);
+  ASSERT_EQ(flight.autopilot.arm(), Result::kAccepted);
+  flight.run(1.0);
+  flight.autopilot.set_battery(1.0);
+  flight.run(1.0);
+  EXPECT_FALSE(flight.said("battery"));
+}
+
 struct BatteryCase {
   int action;
   double remaining;
