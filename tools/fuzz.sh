@@ -14,7 +14,6 @@ names=("$@"); [ $# -gt 0 ] || names=($(basename -a tests/fuzz/corpus/*))
 for name in "${names[@]}"; do
   [ -x "build/fuzz/fuzz_$name" ] || { echo "fuzz: there is no fuzzer '$name'" >&2; exit 2; }
 done
-export ASAN_OPTIONS="detect_stack_use_after_return=0 ${ASAN_OPTIONS:-}"
 
 fuzz() {
   local name=$1 log=build/fuzz/$1.log
