@@ -122,6 +122,11 @@ void Companion::notice_stall(double now) {
 void Companion::take_state(double now) {
   state_ = parts_.link.state();
   for (FlightObserver* observer : parts_.observers) observer->on_state(now, state_);
+  if (state_.reboots != reboots_) {
+    reboots_ = state_.reboots;
+    if (supervisor_.flight_began() >= 0.0)
+      supervisor_.stop(now, Outcome::kAborted, "the autopilot began anew: its local frame may be another");
+  }
   if (state_.estimate_resets == estimate_resets_) return;
   estimate_resets_ = state_.estimate_resets;
   const Vec3 shift = state_.estimate_shift - estimate_shift_;

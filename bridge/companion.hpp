@@ -136,6 +136,7 @@ class Companion {
   bool yaw_known_ = false;
   double last_step_ = -1.0;
   std::uint32_t estimate_resets_ = 0;  // that have been dealt with
+  std::uint32_t reboots_ = 0;          // likewise
   Vec3 estimate_shift_ = Vec3::Zero();
   double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
   bool planner_failed_ = false;

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
-#include <thread>
 
 #include "bridge/dds_autoware.hpp"
 #include "bridge/dds_discovery.hpp"
@@ -306,7 +307,7 @@ void add_alternatives(std::vector<Check>& checks, std::vector<Check> alternative
 
 }  // namespace
 
-std::vector<Check> inspect_dds(const config::Mission& mission, double seconds) {
+std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, const std::stop_token& stop) {
   Inspector inspector(mission.dds_domain);
   std::vector<std::unique_ptr<Probe>> tracks;
   std::vector<std::unique_ptr<Probe>> positions;
@@ -326,7 +327,10 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds) {
     add(positions, px4_name(kLocalPositionTopicV1), kLocalPositionType, judge_position);
     add(positions, px4_name(kLocalPositionTopic), kLocalPositionType, judge_position);
   }
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  std::mutex waiting;
+  std::unique_lock lock(waiting);
+  std::condition_variable_any interrupt;
+  interrupt.wait_for(lock, stop, std::chrono::duration<double>(seconds), [] { return false; });
   inspector.settle();
 
   const bool setpoints = mission.setpoints == config::Transport::kDds;

@@ -2,6 +2,7 @@
 // What `jink doctor` says of the DDS side of a mission.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "bridge/check.hpp"
@@ -9,8 +10,8 @@
 
 namespace jink::bridge {
 
-/// Listens in the mission's domain for `seconds` (blocks that long) and says what it saw: the domain's participants,
-/// then each topic that the mission needs, tracks first. Nothing is ever published.
+/// Listens in the mission's domain for `seconds` (blocks that long, or until `stop` says so) and says what it saw: the
+/// domain's participants, then each topic that the mission needs, tracks first. Nothing is ever published.
 ///
 /// A topic is kOk with writers that match and data that arrive (rate, age of the stamps), or readers that match what
 /// the mission writes. kFault: payloads or frames that cannot be used, another type on the topic, a QoS that does not
@@ -20,6 +21,7 @@ namespace jink::bridge {
 /// there. Near matches of the name (without rt/, other namespace, another version's suffix, a slip of the pen) and of
 /// the type are named in the finding or the remedy.
 /// @throws std::runtime_error, one line, when Fast DDS cannot open its transports.
-[[nodiscard]] std::vector<Check> inspect_dds(const config::Mission& mission, double seconds);
+[[nodiscard]] std::vector<Check> inspect_dds(const config::Mission& mission, double seconds,
+                                             const std::stop_token& stop = {});
 
 }  // namespace jink::bridge

@@ -61,7 +61,10 @@ void Simulator::step() {
   judge();
   publish();
   if (steps_ % kTruthSteps == 0) tell_truth();
-  for (Vehicle& vehicle : vehicles_) vehicle.autopilot.step();
+  for (std::size_t k = 0; k < vehicles_.size(); ++k) {
+    if (parts_.on_step) parts_.on_step(k, now_, vehicles_[k].autopilot);
+    vehicles_[k].autopilot.step();
+  }
   ++steps_;
 }
 

@@ -41,6 +41,8 @@ struct SimulatorParts {
   /// nobody is told of the obstacles.
   std::function<bool(const TrackMessage&, double now)> publish{};
   std::vector<SimulatorObserver*> observers{};
+  /// Before each step of vehicle k's autopilot, at `now`: for other links than MAVLink.
+  std::function<void(std::size_t k, double now, Autopilot&)> on_step{};
 };
 
 /// The vehicles stand on the ground below their starts. The obstacles stand at their t = 0 positions until every

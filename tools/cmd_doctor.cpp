@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "bridge/clock.hpp"
+#include "bridge/dds_inspect.hpp"
 #include "bridge/doctor.hpp"
-#include "bridge/doctor_tracks.hpp"
 #include "bridge/mavsdk_link.hpp"
 #include "config/mission.hpp"
 #include "tools/command_line.hpp"
@@ -116,8 +116,8 @@ int run(const DoctorOptions& options) {
   });
   printer.line(fmt::format("mission {}: listening for {:g} s on {} and DDS domain {}", mission.name, options.seconds,
                            mission.connection, mission.dds_domain));
-  auto tracks = std::async(std::launch::async,
-                           [&] { return bridge::inspect_tracks(mission, options.seconds, stop.get_token()); });
+  auto tracks =
+      std::async(std::launch::async, [&] { return bridge::inspect_dds(mission, options.seconds, stop.get_token()); });
   const bridge::LinkFindings heard = bridge::listen(*link, clock, options.seconds, stop.get_token());
   Checks checks = bridge::inspect_link(mission, heard);
   const auto append = [&checks](Checks more) { std::move(more.begin(), more.end(), std::back_inserter(checks)); };

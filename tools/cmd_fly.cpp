@@ -85,12 +85,16 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
 
 /// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
 /// Ctrl-C brakes and hands over to HOLD.
-void run_loop(bridge::Companion& companion, const bridge::Clock& clock, double rate_hz, bridge::Wake& wake) {
+void run_loop(bridge::Companion& companion, bridge::MavsdkLink& link, const bridge::Clock& clock, double rate_hz,
+              bridge::Wake& wake, const std::vector<bridge::FlightObserver*>& observers) {
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
   auto next = std::chrono::steady_clock::now() + period;
   while (companion.step(clock.now())) {
     if (interrupted()) companion.interrupt(clock.now());
+    while (const auto notice = link.next_notice()) {
+      for (bridge::FlightObserver* observer : observers) observer->on_event(clock.now(), notice->name, notice->detail);
+    }
     wake.wait_until(next);
     // A turn that came late is not made up for: setpoints in a burst say nothing.
     const auto now = std::chrono::steady_clock::now();
@@ -171,7 +175,7 @@ int run(const FlyOptions& options) {
   printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
                            mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
                            mission.dds_domain, options.common.seed));
-  run_loop(companion, clock, settings.companion.setpoint_rate_hz, wake);
+  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, wake, observers);
 
   if (log) log->close();
   const bridge::FlightSummary flight = companion.summary();

@@ -4,13 +4,16 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "bridge/dds_tracks.hpp"
 #include "config/scenario.hpp"
 #include "sim/simulator.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
+#include "tools/sim_dds.hpp"
 #include "tools/summaries.hpp"
 
 namespace jink::tools {
@@ -35,6 +38,7 @@ struct SimOptions {
   int domain = 0;
   int instance = 0;
   bool no_vehicle = false;
+  bool dds_vehicle = false;
   bool no_tracks = false;
   bool lockstep = false;
 };
@@ -131,6 +135,28 @@ void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, con
   }
 }
 
+/// What PX4's uXRCE-DDS agents would publish and take, one for each vehicle; the first without a namespace, as PX4's.
+class DdsSides {
+ public:
+  DdsSides(const SimOptions& options, std::size_t vehicles) : node_(options.domain, "jink sim"), jumps_(vehicles) {
+    for (std::size_t k = 0; k < vehicles; ++k) {
+      const std::size_t instance = static_cast<std::size_t>(options.instance) + k;
+      sides_.push_back(std::make_unique<SimDds>(node_, instance == 0 ? "" : fmt::format("px4_{}", instance)));
+    }
+  }
+
+  void step(std::size_t k, double now, sim::Autopilot& autopilot) {
+    const EstimateJumps& jumps =
+        jumps_[k].update(autopilot.estimator().reset_counter(), autopilot.estimated_motion(), sim::VehicleModel::kStep);
+    sides_[k]->step(now, autopilot, jumps);
+  }
+
+ private:
+  bridge::DdsNode node_;
+  std::vector<std::unique_ptr<SimDds>> sides_;
+  std::vector<JumpWatch> jumps_;
+};
+
 /// The summary of vehicle 0's flight; its outcome and reason are those of the vehicle that fared worst.
 nlohmann::ordered_json summary_of(const sim::Simulator& simulator, const SimOptions& options) {
   const std::vector<sim::VehicleReport> reports = simulator.reports();
@@ -202,7 +228,12 @@ int run(const SimOptions& options) {
   choices.instance = options.instance;
   choices.vehicles = !options.no_vehicle;
   choices.immediate_clock = options.clock == "immediate";
-  sim::Simulator simulator(scenario, choices, {publish, {&teller}});
+  std::optional<DdsSides> dds;
+  if (options.dds_vehicle) dds.emplace(options, 1 + scenario.vehicles.size());
+  const auto on_step = [&dds](std::size_t k, double now, sim::Autopilot& autopilot) {
+    if (dds) dds->step(k, now, autopilot);
+  };
+  sim::Simulator simulator(scenario, choices, {publish, {&teller}, on_step});
   introduce(scenario, options, printer);
   run_until_the_end(simulator, options, printer, writer.get());
   if (log) log->close();
@@ -238,6 +269,9 @@ Subcommand add_sim(CLI::App& jink) {
       ->capture_default_str();
   app->add_flag("--no-vehicle", options->no_vehicle,
                 "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
+  app->add_flag("--dds-vehicle", options->dds_vehicle,
+                "the vehicles on PX4's DDS topics too, as its uXRCE-DDS agent has them: fmu/out/"
+                "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
   app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer tells of the obstacles");
   app->add_option("--domain", options->domain, "DDS domain, 0 to 232")
       ->check(CLI::Range(0, 232))

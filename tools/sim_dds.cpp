@@ -49,7 +49,7 @@ WirePosition position_of(const sim::Autopilot& autopilot, const EstimateJumps& j
   const Vec3 a = bridge::ned_from_enu(motion.acceleration);
   const Vec3 shift = bridge::ned_from_enu(jumps.newest);
   const auto to_float = [](double value) { return static_cast<float>(value); };
-  const bool valid = autopilot.ready();
+  const bool valid = autopilot.ready() && autopilot.position_valid();
   WirePosition wire;
   wire.timestamp(static_cast<std::uint64_t>(bridge::system_time() * 1e6));  // the agent synchronises the clocks
   wire.timestamp_sample(wire.timestamp());
@@ -76,9 +76,10 @@ WirePosition position_of(const sim::Autopilot& autopilot, const EstimateJumps& j
   wire.heading_good_for_control(valid);
   wire.xy_global(valid);
   wire.z_global(valid);
-  wire.ref_lat(sim::kSitlOrigin.latitude_deg);
-  wire.ref_lon(sim::kSitlOrigin.longitude_deg);
-  wire.ref_alt(to_float(sim::kSitlOrigin.altitude_m));
+  const bridge::Geodetic origin = bridge::LocalFrame(sim::kSitlOrigin).to_geodetic(autopilot.estimator().origin());
+  wire.ref_lat(origin.latitude_deg);
+  wire.ref_lon(origin.longitude_deg);
+  wire.ref_alt(to_float(origin.altitude_m));
   wire.dist_bottom(kNaN);
   wire.vxy_max(kInfinity);
   wire.vz_max(kInfinity);

@@ -25,6 +25,7 @@ using jink::bridge::DdsTrackWriter;
 using jink::bridge::SteadyClock;
 using jink::bridge::TrackLimits;
 using jink::bridge::TrackMessage;
+using jink::bridge::TrackSieve;
 using jink::bridge::testing::ChildProcess;
 using jink::bridge::testing::eventually;
 using jink::bridge::testing::own_domain;

@@ -152,7 +152,8 @@ TEST(TrackFaults, GarbageIsOfEveryKindAndLeavesSomeAlone) {
       nan = nan || std::isnan(track.position.x());
       huge = huge || track.position.y() == 1e300;
       negative = negative || track.radius < 0.0;
-      const bool ok = track.position.allFinite() && track.position.y() < 1e5 && track.radius > 0.0 && track.velocity.allFinite();
+      const bool ok =
+          track.position.allFinite() && track.position.y() < 1e5 && track.radius > 0.0 && track.velocity.allFinite();
       EXPECT_FALSE(ok && track.id >= kGarbageIds);
       if (track.id < kGarbageIds) ++(ok ? good : spoiled);
     }
