@@ -298,14 +298,14 @@ class StateWatch final : public bridge::FlightObserver {
     resets = std::max(resets, state.estimate_resets);
     shift = state.estimate_shift;
     low_battery = low_battery || state.battery != bridge::BatteryState::kOk;
-    lost_position = lost_position || !state.local_position_ok;
+    lost_gps = lost_gps || state.gps_lost;
     piloted = piloted || state.mode == bridge::FlightMode::kPosition;
     disarmed = disarmed || !state.armed;
   }
   double oldest = 0.0;
   std::uint32_t resets = 0;
   Vec3 shift = Vec3::Zero();
-  bool low_battery = false, lost_position = false, piloted = false, disarmed = false;
+  bool low_battery = false, lost_gps = false, piloted = false, disarmed = false;
 };
 
 StateWatch watched(const config::Fault& what, double target = 30.0) {
@@ -323,7 +323,7 @@ TEST(ClosedLoop, TheCompanionSeesWhatBefallsTheVehicle) {
   using config::FaultKind;
   const StateWatch fine = watched(fault(FaultKind::kIdSwap, 1));
   EXPECT_LT(fine.oldest, 0.001);
-  EXPECT_FALSE(fine.low_battery || fine.lost_position || fine.piloted || fine.disarmed);
+  EXPECT_FALSE(fine.low_battery || fine.lost_gps || fine.piloted || fine.disarmed);
   EXPECT_EQ(fine.resets, 0U);
 
   EXPECT_GT(watched(fault(FaultKind::kLinkLoss, 1, 0.4)).oldest, 0.37);
@@ -340,7 +340,7 @@ TEST(ClosedLoop, TheCompanionSeesWhatBefallsTheVehicle) {
   config::Fault low = fault(FaultKind::kLowBattery, 1);
   low.remaining = 0.12;
   EXPECT_TRUE(watched(low).low_battery);
-  EXPECT_TRUE(watched(fault(FaultKind::kGpsLoss, 1)).lost_position);
+  EXPECT_TRUE(watched(fault(FaultKind::kGpsLoss, 1)).lost_gps);
   config::Fault pilot = fault(FaultKind::kPilotMode, 1);
   pilot.mode = config::PilotMode::kPosition;
   EXPECT_TRUE(watched(pilot).piloted);

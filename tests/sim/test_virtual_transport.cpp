@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "bridge/track_inbox.hpp"
 #include "sim/vehicle_faults.hpp"
 
 namespace jink::sim {
@@ -229,9 +230,9 @@ TEST_F(VirtualTracksTest, AMessageHoldsNoMoreThanTheReaderTakes) {
   fault.count = 20000;
   const auto messages = under(fault, 0.0);
   ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(messages[0].tracks.size(), 4096U);
+  EXPECT_EQ(messages[0].tracks.size(), bridge::TrackLimits::kTracksPerMessage);
   EXPECT_EQ(messages[0].tracks[0].id, 1U);
-  EXPECT_EQ(messages[0].dropped, 20002U - 4096U);
+  EXPECT_EQ(messages[0].dropped, 20002U - bridge::TrackLimits::kTracksPerMessage);
 }
 
 TEST_F(VirtualTracksTest, AWrongClockShowsInTheAge) {

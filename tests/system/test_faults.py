@@ -22,7 +22,7 @@ import yaml
 
 from flight import Arena, Failed, check, interrupt, kept_lines, main, say, wait, wait_until
 
-SIDE_BY_SIDE = 3  # flights at a time
+SIDE_BY_SIDE = 5  # flights at a time
 FIRST_DOMAIN = 120
 
 SCENARIO = {
@@ -196,6 +196,7 @@ CASES = [
     Case("two_autopilots", during=other_system(12, 9)),
     Case("refuses_to_arm", [at(0, "refuse_arming")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("refuses_offboard", [at(0, "refuse_offboard")], 1, "pre-arm check", ("waiting",), end="ground"),
+    Case("no_position_on_dds", status=1, reason="local position", events=("waiting",), end="ground", mission={"state": "dds"}),
     Case("pilot_takes_over", [at(1.5, "pilot_mode", mode="position")], 1, "the mode was changed to position", end="hold",
          linger=2.0, after=stream_stays_stopped),
     Case("gps_loss", [at(1.5, "gps_loss")], 1, "lost its GPS", hazards=("lost its GPS",), end="ground", linger=12.0),
@@ -203,7 +204,7 @@ CASES = [
          scenario={"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}),
     Case("battery_low", [at(1.0, "low_battery", remaining=0.12)], events=("battery",)),
     Case("battery_critical", [at(1.5, "low_battery", remaining=0.06)], 1, "battery is critical", ("battery",), end="ground"),
-    Case("autopilot_reboots", [at(1.5, "reboot")], 1, "disarmed in flight", linger=3.0, hazards=None),
+    Case("autopilot_reboots", [at(1.5, "reboot")], 1, "began anew", linger=3.0, hazards=None),
     Case("process_stalls_0.4s", during=stalled_process(0.4), events=("stalled",), hazards=("did not run",)),
     Case("process_stalls_4s", status=1, reason="did not run for 4", during=stalled_process(4.0), hazards=("did not run",),
          end="hold"),
