@@ -19,6 +19,7 @@ constexpr double kLostReference = 1.2;     // m from the reference, beyond which
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
+constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;    // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
 constexpr double kMarginStep = 0.05;  // m, of a grown margin that is worth saying
@@ -143,7 +144,8 @@ void Companion::take_state(double now) {
 void Companion::take_tracks(double now) {
   TrackMessage message;
   bool any = false;
-  while (parts_.tracks.poll(message)) {
+  // A turn takes no more than so many: a writer at full speed must not keep the setpoints waiting.
+  for (int taken = 0; taken < kMostMessages && parts_.tracks.poll(message); ++taken) {
     table_.ingest(message);
     any = true;
   }
@@ -295,12 +297,12 @@ void Companion::move(double now, const Decision& decision) {
   new_plan_ = false;
   const Setpoint setpoint = stream_.setpoint(now, heading(now));
   if (!parts_.link.send(setpoint)) {
-    if (!announced_send_failure_) event(now, "send_failed", "setpoints cannot be sent");
-    announced_send_failure_ = true;
+    if (unsent_since_ < 0.0) event(now, "send_failed", "setpoints cannot be sent");
+    if (unsent_since_ < 0.0) unsent_since_ = now;
     return;
   }
-  if (announced_send_failure_) event(now, "send_works", "setpoints can be sent again");
-  announced_send_failure_ = false;
+  if (unsent_since_ >= 0.0) event(now, "send_works", "setpoints can be sent again");
+  unsent_since_ = -1.0;
   for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
   const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.acceleration_lead);
   if (unsent_track_ && now + lead >= unsent_from_) {
@@ -339,10 +341,19 @@ double Companion::heading(double now) {
   return yaw_;
 }
 
+// Whoever watched in this flight is to go on watching, or somebody else in its place.
+int Companion::lost_writers(double now) {
+  const int live = table_.live_writers(now, mission_.tracks.timeout_s);
+  if (supervisor_.flight_began() >= 0.0) most_writers_ = std::max(most_writers_, live);
+  return std::max(0, most_writers_ - live);
+}
+
 FlightPicture Companion::picture(double now) {
   FlightPicture picture;
   picture.newest_tracks = table_.newest_message();
   picture.newest_plan = newest_plan_;
+  picture.lost_writers = lost_writers(now);
+  picture.unsent_for = unsent_since_ < 0.0 ? 0.0 : now - unsent_since_;
   picture.at_takeoff_height = takeoff_point_.z() - state_.position.z() < kTakeoffTolerance;
   next_waypoint(now);
   picture.at_target = waypoint_ + 1 == mission_.waypoints.size() &&
@@ -464,10 +475,9 @@ void Companion::announce_tracks(double now) {
   if (table_.own_tracks() != announced_own_)
     event(now, "tracks_self", std::to_string(table_.own_tracks()) + " tracks are taken for this vehicle itself");
   announced_own_ = table_.own_tracks();
-  const int silent = table_.silent_writers(now, mission_.tracks.timeout_s);
-  if (silent != announced_silent_)
-    event(now, "tracks_silent", std::to_string(silent) + " track writers have fallen silent");
-  announced_silent_ = silent;
+  if (tracks.malformed != announced_malformed_)
+    event(now, "tracks_malformed", std::to_string(tracks.malformed) + " track messages could not be decoded");
+  announced_malformed_ = tracks.malformed;
 }
 
 FlightSummary Companion::summary() const {

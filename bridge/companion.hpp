@@ -104,6 +104,7 @@ class Companion {
   void take_state(double now);
   void measure(double now);
   void record_hazard(double now);
+  [[nodiscard]] int lost_writers(double now);
   void announce(double now);
   void next_waypoint(double now);
   [[nodiscard]] FlightPicture picture(double now);
@@ -140,9 +141,12 @@ class Companion {
   Vec3 estimate_shift_ = Vec3::Zero();
   double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
   bool planner_failed_ = false;
-  bool announced_lost_ = false, announced_send_failure_ = false;
+  bool announced_lost_ = false;
   TrackTableCounts announced_table_;
-  int announced_own_ = 0, announced_silent_ = 0;
+  int announced_own_ = 0;
+  std::uint64_t announced_malformed_ = 0;
+  int most_writers_ = 0;        // live at once in this flight
+  double unsent_since_ = -1.0;  // setpoints; negative: they go out
   bool announced_margin_ = false;
   BatteryState announced_battery_ = BatteryState::kUnknown;
   Phase announced_phase_ = Phase::kDone;

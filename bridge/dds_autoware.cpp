@@ -157,6 +157,7 @@ class DdsAutowareReader::Impl {
   TrackSourceStatus status() const {
     TrackSourceStatus status = inbox_.status();
     status.writers = reader_.writers();
+    status.malformed = malformed_;
     if (status.last_refusal.empty()) status.last_refusal = reader_.mismatch();
     return status;
   }

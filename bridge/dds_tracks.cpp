@@ -82,6 +82,7 @@ class DdsTrackReader::Impl {
   TrackSourceStatus status() const {
     TrackSourceStatus status = inbox_.status();
     status.writers = reader_.writers();
+    status.malformed = malformed_;
     if (const std::string mismatch = reader_.mismatch(); status.last_refusal.empty()) status.last_refusal = mismatch;
     return status;
   }

@@ -79,6 +79,7 @@ void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, vo
 }
 
 MavsdkLink::Impl::Impl(const std::string& url, const Clock& clock) : clock_(clock), created_(clock.now()) {
+  state_.landed_state_known = false;
   capture_mavsdk_log();
   const ConfigurationHandle configuration(
       mavsdk_configuration_create_with_component_type(MAVSDK_COMPONENT_TYPE_COMPANION_COMPUTER));

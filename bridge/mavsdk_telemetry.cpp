@@ -26,6 +26,8 @@ constexpr std::size_t kNotices = 64;
 constexpr std::size_t kAdsbReports = 1024;
 constexpr std::size_t kParameters = 4096;       // more than any autopilot has
 constexpr std::uint32_t kRcReceiver = 0x10000;  // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+constexpr double kMostMetres = 1e5;             // of a local position: beyond it an estimator has lost its mind
+constexpr double kMostSpeed = 1e3;              // m/s
 constexpr double kDegreesE7 = 1e7;
 constexpr double kPerMetre_mm = 1e3;
 constexpr double kPerMetre_cm = 1e2;
@@ -161,6 +163,7 @@ void MavsdkLink::Impl::restarted() {
   position_boot_ms_.reset();
   state_.origin.reset();
   state_.armable = false;
+  state_.landed_state_known = false;
   sys_status_heard_ = false;
   failed_health_.clear();
   batteries_.clear();
@@ -240,8 +243,8 @@ void MavsdkLink::Impl::on_local_position(const Message& message) {
   const Vec3 position_ned = vector(message.fields, "x", "y", "z");
   const Vec3 velocity_ned = vector(message.fields, "vx", "vy", "vz");
   std::uint32_t boot_ms = 0;
-  const bool whole =
-      position_ned.allFinite() && velocity_ned.allFinite() && read(message.fields, "time_boot_ms", boot_ms);
+  const bool whole = position_ned.norm() <= kMostMetres && velocity_ned.norm() <= kMostSpeed &&
+                     read(message.fields, "time_boot_ms", boot_ms);
   const double now = clock_.now();
   const std::scoped_lock lock(mutex_);
   if (!whole) return malformed();
@@ -317,6 +320,7 @@ void MavsdkLink::Impl::on_extended_sys_state(const Message& message) {
   const std::scoped_lock lock(mutex_);
   if (!whole) return malformed();
   state_.in_air = px4::in_air(static_cast<int>(landed_state));
+  state_.landed_state_known = true;
 }
 
 void MavsdkLink::Impl::on_estimator_status(const Message& message) {

@@ -9,13 +9,14 @@
 namespace jink::bridge {
 namespace {
 
-constexpr double kBrakeStep = 0.05;     // s, between points of a stop
-constexpr double kAtRest = 0.02;        // m/s
-constexpr double kJoint = 1e-6;         // s, between the end of one path and the beginning of the next
-constexpr double kHistory = 1.0;        // s, of a path followed before that is kept: positions arrive late
-constexpr double kLearningSpeed = 1.0;  // m/s, below which a lag says little about drag
-constexpr double kLearningRate = 0.4;   // 1/s² of drag for each metre of lag
-constexpr double kMostDrag = 2.0;       // 1/s
+constexpr double kBrakeStep = 0.05;         // s, between points of a stop
+constexpr std::size_t kLongestStop = 4000;  // points: no vehicle is so fast
+constexpr double kAtRest = 0.02;            // m/s
+constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
+constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
+constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
+constexpr double kLearningRate = 0.4;       // 1/s² of drag for each metre of lag
+constexpr double kMostDrag = 2.0;           // 1/s
 
 }  // namespace
 
@@ -54,7 +55,7 @@ void SetpointStream::brake(double now, const std::optional<planner::TimedPoint>&
   Vec3 velocity = from.velocity;
   double t = now;
   const double braking = deceleration(position, velocity);
-  while (velocity.norm() > kAtRest) {
+  while (velocity.norm() > kAtRest && stop.size() < kLongestStop) {
     const double speed = velocity.norm();
     const double next_speed = std::max(0.0, speed - braking * kBrakeStep);
     const Vec3 direction = velocity / speed;

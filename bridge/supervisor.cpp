@@ -18,6 +18,7 @@ constexpr double kClimbTimeout = 30.0;    // s
 constexpr double kLandingTimeout = 90.0;  // s
 constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
 constexpr double kLongestStop = 4.0;      // s
+constexpr double kUnsent = 0.2;           // s
 constexpr double kFailsafePasses =
     1.5;  // s: PX4 is back in OFFBOARD 0.4 s after the stream, a heartbeat may be 1 s old
 constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each second without one
@@ -93,9 +94,10 @@ void Supervisor::finish(Outcome outcome, std::string reason) {
   if (reason_.empty()) reason_ = std::move(reason);
 }
 
-// Asks once, and again where the heartbeat shows no effect. Nothing when it was asked too often or just now.
-std::optional<Command> Supervisor::ask(Command command, double now) {
-  if (asked_for_ == command && now - asked_ < kAskAgain) return std::nullopt;
+// Asks once, and again where a heartbeat since then shows no effect: on an old one the vehicle may be a pilot's by now.
+// Nothing when it was asked too often or just now.
+std::optional<Command> Supervisor::ask(Command command, double now, const VehicleState& state) {
+  if (asked_for_ == command && (now - asked_ < kAskAgain || state.heartbeat_stamp <= asked_)) return std::nullopt;
   if (asked_for_ != command) {
     tries_ = 0;
     refusal_.clear();  // of another request
@@ -106,16 +108,17 @@ std::optional<Command> Supervisor::ask(Command command, double now) {
   return command;
 }
 
-// Asked often enough, and the last request has had its time too.
-bool Supervisor::exhausted(double now) const {
-  return tries_ >= kMostTries && now - asked_ >= kAskAgain;
+// Asked often enough, and the last request has had its time too; or no heartbeat has come in that time to ask again on.
+bool Supervisor::exhausted(double now, const VehicleState& state) const {
+  if (tries_ >= kMostTries) return now - asked_ >= kAskAgain;
+  return tries_ > 0 && state.heartbeat_stamp <= asked_ && now - asked_ >= kMostTries * kAskAgain;
 }
 
 void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   if (phase_ == Phase::kDone || phase_ == Phase::kStopping || phase_ == Phase::kHandover) return;
-  if (phase_ == Phase::kLanding && land_) {  // a landing that must be: it goes on without us
-    reason_ += "; " + reason + ", the landing goes on";
-    finish(pending_outcome_, {});
+  if (phase_ == Phase::kLanding && land_) {  // a landing that must be: once it has begun it goes on without us
+    if (!leave_landing_) reason_ += "; " + reason + ", the landing goes on";
+    leave_landing_ = true;
     return;
   }
   reason_ = std::move(reason);
@@ -138,7 +141,7 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason) {
 
 Decision Supervisor::update(double now, const VehicleState& state, const FlightPicture& picture) {
   if (began_ < 0.0) {
-    began_ = now;
+    began_ = absent_since_ = now;
     entered_ = now;
   }
   if (picture.report && !picture.report->accepted) {
@@ -161,7 +164,7 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
     case Phase::kStopping: {
       const double stopping = now - entered_;
       if (!state.in_air || stopping > kLongestStop || (picture.at_rest && stopping > kShortestStop)) {
-        enter(land_ && state.in_air ? Phase::kLanding : Phase::kHandover, now);
+        enter(land_ && state.armed ? Phase::kLanding : Phase::kHandover, now);
       }
       return {Motion::kBrake, {}};
     }
@@ -222,9 +225,8 @@ bool Supervisor::failsafe_took_over(double now, const VehicleState& state) {
 // Where the battery ends, the flight ends on the ground.
 void Supervisor::flee_battery(double now, const VehicleState& state) {
   if (state.battery != BatteryState::kCritical) return;
-  if (phase_ != Phase::kClimbing && phase_ != Phase::kFlying) return;
-  stop(now, Outcome::kAborted, "the battery is critical");
-  land_ = true;
+  if (phase_ == Phase::kClimbing || phase_ == Phase::kFlying) stop(now, Outcome::kAborted, "the battery is critical");
+  if (phase_ == Phase::kStopping) land_ = true;
 }
 
 // What a flight cannot begin without, into waiting_for_; empty: nothing.
@@ -233,7 +235,7 @@ void Supervisor::find_missing(double now, const VehicleState& state, const Fligh
   const bool tracks = !mission_.tracks.required ||
                       (picture.newest_tracks >= 0.0 && now - picture.newest_tracks < mission_.tracks.timeout_s);
   const bool position = state.position_stamp >= 0.0 && now - state.position_stamp < settings_.stale_state;
-  const bool ready = position && state.local_position_ok && (state.armed || state.armable);
+  const bool ready = position && state.local_position_ok && state.landed_state_known && (state.armed || state.armable);
   waiting_for_.clear();
   absent_ = MissingPeer::kNone;
   if (!autopilot) {
@@ -243,8 +245,9 @@ void Supervisor::find_missing(double now, const VehicleState& state, const Fligh
     waiting_for_ = "obstacle tracks on DDS domain " + std::to_string(mission_.dds_domain);
     absent_ = MissingPeer::kTracks;
   } else if (!ready) {
-    waiting_for_ =
-        "the autopilot to be ready: " + (state.health.empty() ? std::string("local position") : state.health);
+    waiting_for_ = "the autopilot to be ready: " +
+                   (!state.health.empty() ? state.health
+                                          : std::string(state.landed_state_known ? "local position" : "landed state"));
   } else if (state.battery == BatteryState::kLow || state.battery == BatteryState::kCritical) {
     waiting_for_ = "a charged battery: it is " + std::string(to_string(state.battery));
   }
@@ -259,7 +262,9 @@ Decision Supervisor::wait(double now, const VehicleState& state, const FlightPic
     return {Motion::kStay, {}};
   }
   const bool peer = absent_ != MissingPeer::kNone;
-  if (now - began_ > (peer ? settings_.peer_timeout : settings_.health_timeout)) {
+  if (absent_ != absent_before_) absent_since_ = now;
+  absent_before_ = absent_;
+  if (now - absent_since_ > (peer ? settings_.peer_timeout : settings_.health_timeout)) {
     missing_peer_ = absent_;
     finish(Outcome::kAborted, "waited in vain for " + waiting_for_);
   }
@@ -285,21 +290,27 @@ Decision Supervisor::engage(double now, const VehicleState& state, const FlightP
     enter(state.in_air ? Phase::kFlying : Phase::kClimbing, now);
     return decision;
   }
-  if (exhausted(now)) {
+  if (exhausted(now, state)) {
     stop(now, Outcome::kAborted,
          refusal_.empty() ? "the autopilot did not follow the request: " + std::string(to_string(*asked_for_))
                           : refusal_);
     return decision;
   }
+  if (picture.report && picture.report->command == Command::kOffboard && picture.report->accepted) granted_ = now;
   if (state.mode != FlightMode::kOffboard) {
-    decision.request = ask(Command::kOffboard, now);
+    // It was there, by the autopilot's word, and is no more: somebody took it back.
+    if (state.armed && granted_ >= 0.0 && state.heartbeat_stamp > granted_ + kSettling && !state.failsafe) {
+      finish(Outcome::kAborted, "OFFBOARD was granted and taken back: mode " + std::string(to_string(state.mode)));
+      return {};
+    }
+    decision.request = ask(Command::kOffboard, now, state);
     return decision;
   }
   // What was there when it was waited for may be gone again.
   find_missing(now, state, picture);
   if (waiting_for_.empty()) {
     not_ready_since_ = -1.0;
-    decision.request = ask(Command::kArm, now);
+    decision.request = ask(Command::kArm, now, state);
     return decision;
   }
   if (not_ready_since_ < 0.0) not_ready_since_ = now;
@@ -347,6 +358,10 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
     hazard_ = "the autopilot has lost its GPS";
   } else if (mission_.tracks.required && now - picture.newest_tracks > mission_.tracks.timeout_s) {
     hazard_ = "the obstacle tracks are stale";
+  } else if (mission_.tracks.required && picture.lost_writers > 0) {
+    hazard_ = "a writer of obstacle tracks has fallen silent";
+  } else if (picture.unsent_for > kUnsent) {
+    hazard_ = "setpoints cannot be sent";
   } else if (phase_ == Phase::kFlying && now - std::max(picture.newest_plan, entered_) > settings_.stale_plan) {
     hazard_ = "the planner is late";
   }
@@ -354,7 +369,7 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
 
 Decision Supervisor::fly(double now, const VehicleState& state, const FlightPicture& picture) {
   // Where the vehicle was is no proof of where it is.
-  if (picture.at_target && now - state.position_stamp <= settings_.stale_state) {
+  if (picture.at_target && now - state.position_stamp <= settings_.stale_state && failsafe_since_ < 0.0) {
     hazard_.clear();
     pending_outcome_ = Outcome::kReached;
     reason_ = "target reached";
@@ -377,19 +392,19 @@ Decision Supervisor::fly(double now, const VehicleState& state, const FlightPict
 Decision Supervisor::rescue(double now, const VehicleState& state) {
   if (state.mode == FlightMode::kOffboard) {  // it went back by itself: the stream was still on its way
     rescue_ = false;
-    return {Motion::kBrake, ask(Command::kHold, now)};
+    return {Motion::kBrake, ask(Command::kHold, now, state)};
   }
   if (!state.failsafe || flies_by_itself(state.mode) || (!state.armed && !state.in_air)) {
     finish(pending_outcome_, {});
   } else if (!state.local_position_ok) {
     reason_ += "; without a position there is no HOLD, the failsafe has the vehicle";
     finish(pending_outcome_, {});
-  } else if (exhausted(now)) {
+  } else if (exhausted(now, state)) {
     reason_ +=
         "; HOLD was not to be had" + (refusal_.empty() ? "" : " (" + refusal_ + ")") + ", the failsafe has the vehicle";
     finish(pending_outcome_, {});
   } else {
-    return {Motion::kNone, ask(Command::kHold, now)};
+    return {Motion::kNone, ask(Command::kHold, now, state)};
   }
   return {};
 }
@@ -409,18 +424,24 @@ Decision Supervisor::hand_over(double now, const VehicleState& state) {
     finish(pending_outcome_, {});
     return {};
   }
+  if (state.failsafe && !offboard && !flies_by_itself(state.mode)) {
+    reason_ += "; then the autopilot's failsafe took over, mode " + std::string(to_string(state.mode));
+    pending_outcome_ = Outcome::kAborted;
+    rescue_ = true;
+    return rescue(now, state);
+  }
   // HOLD is there; or somebody chose another mode, and that stands.
   if ((!offboard && !landing) || grounded) {
     finish(pending_outcome_, {});
     return {};
   }
-  if (exhausted(now)) {
+  if (exhausted(now, state)) {
     finish(pending_outcome_ == Outcome::kReached ? Outcome::kAborted : pending_outcome_, {});
     reason_ += "; HOLD was never confirmed, the autopilot's own failsafe has the vehicle";
     return {};
   }
   // The stream goes on until HOLD is confirmed, so that the vehicle is never without an order.
-  return {motion, ask(Command::kHold, now)};
+  return {motion, ask(Command::kHold, now, state)};
 }
 
 Decision Supervisor::land(double now, const VehicleState& state) {
@@ -438,18 +459,20 @@ Decision Supervisor::land(double now, const VehicleState& state) {
     return {};
   }
   if (state.mode == FlightMode::kLand) {
-    if (now - entered_ > kLandingTimeout) {
+    if (leave_landing_) {
+      finish(pending_outcome_, {});
+    } else if (now - entered_ > kLandingTimeout) {
       fail("the landing did not end");
       finish(pending_outcome_, {});
     }
     return {};
   }
-  if (exhausted(now)) {
+  if (exhausted(now, state)) {
     fail("the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_));
     enter(Phase::kHandover, now);
-    return {Motion::kBrake, ask(Command::kHold, now)};
+    return {Motion::kBrake, ask(Command::kHold, now, state)};
   }
-  return {land_ ? Motion::kBrake : Motion::kFollow, ask(Command::kLand, now)};
+  return {land_ ? Motion::kBrake : Motion::kFollow, ask(Command::kLand, now, state)};
 }
 
 }  // namespace jink::bridge

@@ -42,6 +42,8 @@ struct SupervisorSettings {
 struct FlightPicture {
   double newest_tracks = -1.0;  ///< reception of the newest track message; negative: never
   double newest_plan = -1.0;    ///< when the newest plan was made; negative: none
+  int lost_writers = 0;         ///< writers of tracks that were live in this flight and are silent, not replaced
+  double unsent_for = 0.0;      ///< s, for which setpoints could not be handed to the transport
   bool at_takeoff_height = false;
   bool at_target = false;               ///< within the arrival tolerance of the last waypoint, slow
   bool at_rest = false;                 ///< the brake has done its work
@@ -85,7 +87,7 @@ class Supervisor {
  private:
   void enter(Phase phase, double now);
   void finish(Outcome outcome, std::string reason);
-  std::optional<Command> ask(Command command, double now);
+  std::optional<Command> ask(Command command, double now, const VehicleState& state);
   Decision wait(double now, const VehicleState& state, const FlightPicture& picture);
   Decision engage(double now, const VehicleState& state, const FlightPicture& picture);
   Decision climb(double now, const VehicleState& state, const FlightPicture& picture);
@@ -95,7 +97,7 @@ class Supervisor {
   Decision rescue(double now, const VehicleState& state);
   Decision fall_back(double now);
   void flee_battery(double now, const VehicleState& state);
-  [[nodiscard]] bool exhausted(double now) const;
+  [[nodiscard]] bool exhausted(double now, const VehicleState& state) const;
   void find_missing(double now, const VehicleState& state, const FlightPicture& picture);
   void find_hazard(double now, const VehicleState& state, const FlightPicture& picture);
   bool taken_over(double now, const VehicleState& state);
@@ -115,6 +117,10 @@ class Supervisor {
   bool rescue_ = false;           // out of a failsafe that sinks: HOLD without setpoints
   bool land_ = false;             // the stop ends in a landing, not in HOLD
   bool landing_interrupted_ = false;
+  bool leave_landing_ = false;  // once it has begun
+  double granted_ = -1.0;       // when the autopilot granted OFFBOARD; negative: not yet
+  double absent_since_ = -1.0;  // who is waited for
+  MissingPeer absent_before_ = MissingPeer::kNone;
   double asked_ = -1.0;  // the newest request
   std::optional<Command> asked_for_;
   int tries_ = 0;

@@ -112,12 +112,21 @@ void Team::take(const IntentMessage& message, const VehicleState& own) {
 void Team::forget_the_silent(double now) {
   const double limit = kFresh + coast_s_;
   for (auto& [writer, peer] : peers_) {
-    if (peer.placed < 0.0 || now - peer.placed <= limit) continue;
-    peer.placed = -1.0;
-    news_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
-                                      " s, its path is not regarded any more"});
+    const bool silent = peer.placed >= 0.0 && now - peer.placed > limit;
+    if (silent && !peer.announced_silent) {
+      news_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
+                                        " s, it is taken to hang where its path ended"});
+    }
+    peer.announced_silent = silent;
+    if (silent && now - peer.placed > kHangs) peer.placed = -1.0;
   }
-  std::erase_if(peers_, [&](const auto& item) { return now - item.second.seen > limit; });
+  // Who began anew speaks for itself again.
+  const auto replaced = [&](const Peer& old) {
+    return old.announced_silent && std::any_of(peers_.begin(), peers_.end(), [&](const auto& other) {
+             return !other.second.announced_silent && system_of(other.second.vehicle) == system_of(old.vehicle);
+           });
+  };
+  std::erase_if(peers_, [&](const auto& item) { return now - item.second.seen > kHangs || replaced(item.second); });
 }
 
 void Team::find_namesakes(double now) {
@@ -151,7 +160,7 @@ std::vector<planner::KnownPath> Team::paths(double now, double start) const {
     path.position_sigma = kSilentDoubt * std::max(0.0, now - peer.placed - kFresh);
     path.velocity_sigma = kDoubt;
     path.age = std::max(0.0, start - peer.told);
-    if (own_vehicle_ < peer.vehicle) path.until = kRightOfWay;
+    if (own_vehicle_ < peer.vehicle && !peer.announced_silent) path.until = kRightOfWay;  // who is silent gives no way
     paths.push_back(std::move(path));
   }
   return paths;

@@ -29,6 +29,7 @@ class Team {
   static constexpr double kTold = 8.0;        ///< s of the path ahead that are told
   static constexpr double kRightOfWay = 2.0;  ///< s
   static constexpr double kFresh = 1.0;       ///< s without a word, after which a path is doubted more and more
+  static constexpr double kHangs = 60.0;      ///< s without a word, after which a vehicle is taken to be gone
   static constexpr std::size_t kMostVehicles = 64;
 
   /// Something that people are to be told.
@@ -36,8 +37,9 @@ class Team {
     std::string name, detail;
   };
 
-  /// `radius` is that of this vehicle. A vehicle silent for kFresh + `coast_s` is not regarded any more. The transport
-  /// must outlive the team.
+  /// `radius` is that of this vehicle. A vehicle silent for kFresh + `coast_s` is reported and taken to hang where its
+  /// path ended: whoever has handed over to HOLD and ended its program is still there. After kHangs it is forgotten.
+  /// The transport must outlive the team.
   Team(IntentTransport& transport, double radius, double coast_s);
 
   /// Takes in what has come. An intent counts from its stamp, as StampClock believes it; where that knows the changes
@@ -74,6 +76,7 @@ class Team {
     planner::TimedPath path;  // our frame and clock
     double radius = 0.0, margin = 0.0;
     bool announced_clock = false;
+    bool announced_silent = false;
   };
   void take(const IntentMessage& message, const VehicleState& own);
   void forget_the_silent(double now);

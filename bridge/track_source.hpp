@@ -27,6 +27,7 @@ struct TrackSourceStatus {
   std::uint64_t messages = 0;        ///< accepted
   std::uint64_t bad_frames = 0;      ///< messages refused for their frame_id
   std::uint64_t dropped_tracks = 0;  ///< tracks left out for their values
+  std::uint64_t malformed = 0;       ///< payloads that could not be decoded
   std::string last_refusal;          ///< why, of the newest refusal
 };
 

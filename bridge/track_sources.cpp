@@ -24,6 +24,7 @@ TrackSourceStatus TrackSources::status() const {
     sum.messages += status.messages;
     sum.bad_frames += status.bad_frames;
     sum.dropped_tracks += status.dropped_tracks;
+    sum.malformed += status.malformed;
     if (status.last_refusal != each.refusal) last_refusal_ = each.refusal = status.last_refusal;
   }
   sum.last_refusal = last_refusal_;

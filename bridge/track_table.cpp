@@ -16,14 +16,17 @@ constexpr double kMoving = 0.05;     // m/s, above which a track that stands is 
 constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velocity, at most, of its own track
 constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
 constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
-constexpr double kSelfLeaves = 2.0;  // times the distance that makes a track its own, at which it no longer is
+constexpr double kSelfLeaves = 1.5;  // times the distance that makes a track its own, at which it no longer is
+constexpr double kSelfSize = 3.0;    // times the vehicle's radius, that its own track may have
 
-// The first of its id keeps it, later ones get the next that is free.
+// The first of its id keeps it, later ones are numbered on from the largest.
 void make_ids_unique(std::vector<planner::Track>& tracks) {
   std::unordered_set<std::uint64_t> used;
   used.reserve(tracks.size());
+  std::uint64_t last = 0;
+  for (const planner::Track& track : tracks) last = std::max(last, track.id);
   for (planner::Track& track : tracks) {
-    while (!used.insert(track.id).second) ++track.id;
+    while (!used.insert(track.id).second) track.id = ++last;
   }
 }
 
@@ -71,7 +74,9 @@ void TrackTable::ingest(const TrackMessage& message) {
   remember(message);
   const double measured = message.received - *delay;
   if (message.watches) newest_message_ = std::max(newest_message_, message.received);
-  writers_[message.writer].believed = message.received;
+  Writer& writer = writers_[message.writer];
+  writer.believed = message.received;
+  writer.watches = message.watches;
   for (const planner::Track& track : message.tracks) {
     if (refusal(track) != nullptr) {
       ++counts_.invalid_tracks;
@@ -107,21 +112,18 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
     const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
     const double near = (radius + doubt) * (entry.is_self ? kSelfLeaves : 1.0);
     const bool here = (entry.track.position + age * entry.track.velocity - position).norm() < near &&
-                      (entry.track.velocity - velocity).norm() < kSelfSpeed;
-    if (!here) {
-      entry.self_since = -1.0;
-    } else if (entry.self_since < 0.0) {
-      entry.self_since = now;
-    }
-    entry.is_self = here && now - entry.self_since >= kSelfTime;
+                      (entry.track.velocity - velocity).norm() < kSelfSpeed && entry.track.radius <= kSelfSize * radius;
+    if (here && !entry.near_from) entry.near_from = position;
+    if (!here) entry.near_from.reset();
+    entry.is_self = here && (entry.is_self || (position - *entry.near_from).norm() > kSelfWay);
     own_tracks_ += entry.is_self ? 1 : 0;
   }
 }
 
-int TrackTable::silent_writers(double now, double timeout_s) const {
+int TrackTable::live_writers(double now, double timeout_s) const {
   return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
-    const double silence = now - item.second.believed;
-    return item.second.believed >= 0.0 && silence > timeout_s && silence <= kForgetWriter;
+    const Writer& writer = item.second;
+    return writer.watches && writer.believed >= 0.0 && now - writer.believed <= timeout_s;
   }));
 }
 

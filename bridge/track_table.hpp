@@ -38,9 +38,10 @@ class TrackTable {
   /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
   void ingest(const TrackMessage& message);
 
-  /// Finds tracks that are the vehicle itself, as a tracker reports them that sees it too: within `radius` of
-  /// `position` at nearly its velocity for kSelfTime. predict() leaves them out for as long as they stay there: an
-  /// obstacle with its centre inside the vehicle would have hit it. To be called when messages came in.
+  /// Finds tracks that are the vehicle itself, as a tracker reports them that sees it too: no larger than a few times
+  /// `radius`, within that of `position` at nearly its velocity, for kSelfWay of its way. predict() leaves them out for
+  /// as long as they stay there. What only stands beside a vehicle that hangs there is never taken for it. To be called
+  /// when messages came in.
   void find_self(double now, const planner::Vec3& position, const planner::Vec3& velocity, double radius);
 
   /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
@@ -53,19 +54,19 @@ class TrackTable {
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
   /// Living tracks that are taken for the vehicle itself.
   [[nodiscard]] int own_tracks() const { return own_tracks_; }
-  /// Writers whose last believed message came between `timeout_s` and kForgetWriter before `now`.
-  [[nodiscard]] int silent_writers(double now, double timeout_s) const;
+  /// Writers that watch and whose newest believed message is no older than `timeout_s`.
+  [[nodiscard]] int live_writers(double now, double timeout_s) const;
 
   static constexpr std::size_t kMost = 20000;    ///< living tracks
-  static constexpr double kSelfTime = 0.2;       ///< s
+  static constexpr double kSelfWay = 1.0;        ///< m
   static constexpr double kForgetWriter = 60.0;  ///< s of silence, after which a writer is taken for ended
 
  private:
   struct Entry {
-    planner::Track track;      // as measured
-    double measured = 0.0;     // companion's clock
-    double seen = 0.0;         // reception of the last message that held it
-    double self_since = -1.0;  // where the vehicle is; negative: it is elsewhere
+    planner::Track track;                    // as measured
+    double measured = 0.0;                   // companion's clock
+    double seen = 0.0;                       // reception of the last message that held it
+    std::optional<planner::Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
   };
   struct Seen {
@@ -77,6 +78,7 @@ class TrackTable {
     std::vector<Seen> last;  // what the newest message that was taken in held
     double received = 0.0;
     double believed = -1.0;  // reception of the newest message that was taken in
+    bool watches = true;
   };
   std::optional<double> delay_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;

@@ -48,6 +48,7 @@ struct VehicleState {
   bool local_position_ok = false;  ///< its estimator holds a local position
   bool gps_lost = false;           ///< it has a GPS that it counts on, and that has no fix: the position will drift
   bool in_air = false;             ///< landed state says so (or taking off, landing)
+  bool landed_state_known = true;  ///< false: the autopilot has not told yet
   std::string health;              ///< what is missing, in the autopilot's terms; empty when nothing is
   bool failsafe = false;           ///< the autopilot's own failsafe flies: HEARTBEAT.system_status CRITICAL or worse
   /// Jumps of the position estimate since the first position: how many, and the sum of them. The vehicle did not move.

@@ -102,7 +102,7 @@ class VirtualTracks final : public bridge::TrackSource {
   TrackFaults faults_;
   double now_ = 0.0;
   VehicleTruth vehicle_;
-  bridge::TrackSourceStatus status_{1, 0, 0, 0, {}};
+  bridge::TrackSourceStatus status_{1, 0, 0, 0, 0, {}};
 };
 
 }  // namespace jink::sim

@@ -33,7 +33,7 @@ struct FlyOptions {
 /// Says what happens: events as lines, progress as a live line on a terminal and a line every few seconds elsewhere.
 class Teller final : public bridge::FlightObserver {
  public:
-  Teller(const config::Mission& mission, const Printer& printer) : mission_(mission), printer_(printer) {}
+  Teller(const config::Mission& mission, BackgroundPrinter& printer) : mission_(mission), printer_(printer) {}
 
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(fmt::format("[{:6.1f} s] {}{}{}", t, name, detail.empty() ? "" : ": ", detail));
@@ -60,7 +60,7 @@ class Teller final : public bridge::FlightObserver {
 
  private:
   const config::Mission& mission_;
-  const Printer& printer_;
+  BackgroundPrinter& printer_;
   planner::Vec3 position_ = planner::Vec3::Zero();
   std::size_t tracks_ = 0;
   double nearest_ = planner::kInfinity;
@@ -87,15 +87,28 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
 /// Ctrl-C brakes and hands over to HOLD.
 void run_loop(bridge::Companion& companion, bridge::MavsdkLink& link, const bridge::Clock& clock, double rate_hz,
               bridge::Wake& wake, const std::vector<bridge::FlightObserver*>& observers) {
+  constexpr double kFailing_s = 10.0;  // of turns that throw, after which HOLD has been asked for often enough
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
   auto next = std::chrono::steady_clock::now() + period;
-  while (companion.step(clock.now())) {
+  double last_good = clock.now();
+  while (true) {
+    const double begun = clock.now();
+    bool failed = false;
+    try {
+      if (!companion.step(begun)) return;
+      last_good = begun;
+    } catch (const std::exception& failure) {
+      failed = true;
+      companion.end(begun, bridge::Outcome::kAborted, std::string("jink failed: ") + failure.what());
+      link.request(bridge::Command::kHold);
+    }
+    if (failed && begun - last_good > kFailing_s) return;
     if (interrupted()) companion.interrupt(clock.now());
     while (const auto notice = link.next_notice()) {
       for (bridge::FlightObserver* observer : observers) observer->on_event(clock.now(), notice->name, notice->detail);
     }
-    wake.wait_until(next);
+    wake.wait_until(failed ? std::max(next, std::chrono::steady_clock::now() + std::chrono::milliseconds(500)) : next);
     // A turn that came late is not made up for: setpoints in a burst say nothing.
     const auto now = std::chrono::steady_clock::now();
     if (next <= now) next = std::max(next + period, now);
@@ -152,7 +165,8 @@ int run(const FlyOptions& options) {
   catch_signals();
   const bridge::SteadyClock clock;
   bridge::Wake wake;
-  Teller teller(mission, printer);
+  std::optional<BackgroundPrinter> background(printer);
+  Teller teller(mission, *background);
   std::vector<bridge::FlightObserver*> observers{&teller};
   std::unique_ptr<FlightLog> log;
   std::unique_ptr<bridge::MavsdkLink> link;
@@ -172,12 +186,12 @@ int run(const FlyOptions& options) {
       {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &wake);
   transports.tracks.notify(wake);
   bridge::Companion companion(mission, settings, transports.parts(planner, observers, clock));
-  printer.line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}", mission.name,
-                           mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s", mission.connection,
-                           mission.dds_domain, options.common.seed));
+  background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
+                               mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
+                               mission.connection, mission.dds_domain, options.common.seed));
   run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, wake, observers);
 
-  if (log) log->close();
+  background.reset();
   const bridge::FlightSummary flight = companion.summary();
   const auto summary = flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
   write_json(options.common.json, summary);
@@ -189,6 +203,7 @@ int run(const FlyOptions& options) {
   } else {
     printer.line(describe_flight(summary));
   }
+  if (log) log->close();
   return exit_code(flight);
 }
 

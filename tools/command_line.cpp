@@ -11,6 +11,7 @@
 #include <iostream>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 namespace jink::tools {
 namespace {
@@ -46,6 +47,39 @@ config::Settings CommonOptions::settings() const {
 
 int CommonOptions::thread_count() const {
   return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+BackgroundPrinter::BackgroundPrinter(const Printer& printer)
+    : printer_(printer), thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+BackgroundPrinter::~BackgroundPrinter() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void BackgroundPrinter::put(std::string text, bool live) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (queue_.size() == kMost) {
+      ++dropped_;
+      return;
+    }
+    queue_.push_back({std::move(text), live});
+  }
+  filled_.notify_one();
+}
+
+void BackgroundPrinter::work(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (filled_.wait(lock, stop, [&] { return !queue_.empty(); }) || !queue_.empty()) {
+    const Text next = std::move(queue_.front());
+    queue_.pop_front();
+    const std::uint64_t dropped = std::exchange(dropped_, 0);
+    lock.unlock();
+    if (dropped > 0) printer_.line("(" + std::to_string(dropped) + " lines left out: they were not read)");
+    next.live ? printer_.live(next.text) : printer_.line(next.text);
+    lock.lock();
+  }
 }
 
 void Printer::line(const std::string& text) const {
@@ -92,6 +126,9 @@ void catch_signals() {
   action.sa_handler = [](int) { g_interrupted.store(true); };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);  // the terminal is gone: the vehicle is not
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);  // whoever read our output is gone: likewise
 }
 
 bool interrupted() {

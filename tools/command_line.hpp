@@ -3,12 +3,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "config/settings.hpp"
@@ -53,11 +58,42 @@ class Printer {
   mutable bool live_ = false;
 };
 
+/// Hands lines to a printer in a thread of its own: a terminal that is stopped or a pipe that nobody reads must not
+/// hold up who says something. What does not fit the queue is left out and counted. The printer outlives it.
+class BackgroundPrinter {
+ public:
+  explicit BackgroundPrinter(const Printer& printer);
+  /// Prints what is queued.
+  ~BackgroundPrinter();
+  BackgroundPrinter(const BackgroundPrinter&) = delete;
+  BackgroundPrinter& operator=(const BackgroundPrinter&) = delete;
+
+  void line(std::string text) { put(std::move(text), false); }
+  void live(std::string text) { put(std::move(text), true); }
+  [[nodiscard]] bool terminal() const { return printer_.terminal(); }
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  struct Text {
+    std::string text;
+    bool live = false;
+  };
+  void put(std::string text, bool live);
+  void work(const std::stop_token& stop);
+
+  const Printer& printer_;
+  std::mutex mutex_;  // guards queue_ and dropped_
+  std::condition_variable_any filled_;
+  std::deque<Text> queue_;
+  std::uint64_t dropped_ = 0;
+  std::jthread thread_;
+};
+
 /// Writes a summary as one object: to stdout for "-", else to the file, which appears whole or not at all. Does nothing
 /// for an empty name. Throws UsageError.
 void write_json(const std::string& file, const nlohmann::ordered_json& summary);
 
-/// From now on SIGINT and SIGTERM set a flag instead of ending the process.
+/// From now on SIGINT, SIGTERM and SIGHUP set a flag instead of ending the process, and SIGPIPE does nothing.
 void catch_signals();
 /// True once one came.
 bool interrupted();

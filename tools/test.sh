@@ -6,4 +6,5 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}; shift || true
 tools/build.sh "$preset"
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
-ctest --preset "$preset" -j "$(nproc)" "$@"
+# One more than cores: the system tests mostly wait.
+ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@"

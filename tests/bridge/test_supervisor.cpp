@@ -232,6 +232,57 @@ TEST(Supervisor, TheLastTryHasItsTimeToo) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kClimbing);
 }
 
+// A pilot who goes back to the mode that he came from before a heartbeat has shown OFFBOARD.
+TEST(Supervisor, OffboardThatWasGrantedAndTakenBackIsNotAskedForAgain) {
+  Flight flight;
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.in_air = flight.state.armed = true;
+  flight.turn();
+  flight.turn();
+  EXPECT_EQ(flight.asked(Command::kOffboard), 1);
+  flight.picture.report = CommandReport{Command::kOffboard, true, ""};
+  flight.run(5.0);
+  EXPECT_EQ(flight.asked(Command::kOffboard), 1);
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.reason(), "OFFBOARD was granted and taken back: mode position");
+}
+
+// On a heartbeat from before the request the vehicle may be a pilot's by now.
+TEST(Supervisor, DoesNotRepeatARequestOnAnOldHeartbeat) {
+  Flight flight;
+  flight.stop();
+  flight.picture.at_rest = true;
+  while (flight.asked(Command::kHold) == 0) flight.turn();
+  flight.heartbeats = false;
+  flight.run(4.0);
+  EXPECT_EQ(flight.asked(Command::kHold), 1);
+  flight.heartbeats = true;
+  flight.turn();
+  EXPECT_EQ(flight.asked(Command::kHold), 2);
+}
+
+TEST(Supervisor, WaitsForALandedStateBeforeItBegins) {
+  Flight flight;
+  flight.state.armed = true;
+  flight.state.landed_state_known = false;
+  flight.run(1.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kWaiting);
+  EXPECT_NE(flight.supervisor.waiting_for().find("landed state"), std::string::npos);
+  flight.state.landed_state_known = flight.state.in_air = true;
+  EXPECT_EQ(flight.turn().motion, Motion::kStay);
+}
+
+TEST(Supervisor, ATimeOutCountsFromWhenSomebodyWasLastThere) {
+  Flight flight;
+  flight.state.armable = false;
+  flight.run(50.0);
+  flight.tracks = false;
+  flight.run(5.0);
+  flight.tracks = true;
+  flight.run(1.0);
+  EXPECT_FALSE(flight.supervisor.done());
+}
+
 TEST(Supervisor, RefusalOfAnotherRequestIsNotTheReason) {
   Flight flight;
   flight.engage().turn();
@@ -540,6 +591,20 @@ TEST(Supervisor, TheFirstPlanHasItsTime) {
   EXPECT_EQ(flight.run(0.1).motion, Motion::kBrake);
 }
 
+TEST(Supervisor, AWriterThatFellSilentAndSetpointsThatCannotBeSentAreHazards) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.picture.lost_writers = 1;
+  EXPECT_EQ(flight.turn().motion, Motion::kBrake);
+  EXPECT_EQ(flight.supervisor.hazard(), "a writer of obstacle tracks has fallen silent");
+  flight.picture.lost_writers = 0;
+  flight.picture.unsent_for = 0.1;
+  EXPECT_EQ(flight.turn().motion, Motion::kFollow);
+  flight.picture.unsent_for = 0.3;
+  EXPECT_EQ(flight.turn().motion, Motion::kBrake);
+  EXPECT_EQ(flight.supervisor.hazard(), "setpoints cannot be sent");
+}
+
 TEST(Supervisor, AHazardThatComesAgainAndAgainEndsTheFlight) {
   Flight flight;
   flight.fly();
@@ -588,6 +653,38 @@ TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
   ASSERT_TRUE(flight.supervisor.done());
   EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
   EXPECT_EQ(flight.supervisor.reason(), "the autopilot's failsafe took over, mode position");
+}
+
+// The link was lost in the moment of arrival: HOLD never came through.
+TEST(Supervisor, AFailsafeInTheHandOverIsNoArrival) {
+  Flight flight;
+  flight.fly();
+  flight.picture.at_target = true;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
+  flight.turn();
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  flight.run(2.0);
+  EXPECT_FALSE(flight.supervisor.done());
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);
+  EXPECT_GE(flight.asked(Command::kHold), 2);
+  flight.state.mode = FlightMode::kHold;
+  flight.state.failsafe = false;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_NE(flight.supervisor.reason().find("failsafe took over"), std::string::npos);
+}
+
+TEST(Supervisor, AFailsafeIsNoPlaceToArriveIn) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.mode = FlightMode::kPosition;
+  flight.state.failsafe = true;
+  flight.turn();
+  flight.picture.at_target = true;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
 
 TEST(Supervisor, AFailsafeThatHoldIsRefusedToKeepsTheVehicle) {
@@ -663,10 +760,38 @@ TEST(Supervisor, ACriticalBatteryEndsTheFlightByLanding) {
   flight.run(1.0);
   // Ctrl-C must not keep it in the air.
   flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
+  flight.turn();
   EXPECT_TRUE(flight.supervisor.done());
   EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
   EXPECT_EQ(flight.supervisor.reason(), "the battery is critical; interrupted, the landing goes on");
   EXPECT_EQ(flight.asked(Command::kHold), 0);
+}
+
+// Pressed while it brakes, and again in every turn: LAND is asked for first.
+TEST(Supervisor, CtrlCDoesNotKeepACriticalBatteryFromLanding) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.state.battery = BatteryState::kCritical;
+  flight.picture.at_rest = true;
+  for (int i = 0; i < 60; ++i) {
+    flight.turn();
+    flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
+  }
+  EXPECT_EQ(flight.asked(Command::kLand), 1);
+  EXPECT_EQ(flight.asked(Command::kHold), 0);
+  EXPECT_FALSE(flight.supervisor.done());
+  flight.state.mode = FlightMode::kLand;
+  flight.turn();
+  EXPECT_TRUE(flight.supervisor.done());
+}
+
+TEST(Supervisor, ABatteryThatEndsWhileItStopsLandsToo) {
+  Flight flight;
+  flight.stop();
+  flight.state.battery = BatteryState::kCritical;
+  flight.picture.at_rest = true;
+  flight.run(1.0);
+  EXPECT_EQ(flight.requests.back(), Command::kLand);
 }
 
 TEST(Supervisor, DoesNotBeginWithALowBattery) {

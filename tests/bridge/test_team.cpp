@@ -185,7 +185,7 @@ TEST(Team, NoticesTwoOfTheSameSystem) {
   EXPECT_TRUE(mine.news(10.0, "team_same_id"));
 }
 
-TEST(Team, DoubtsASilentOneMoreAndMoreAndForgetsIt) {
+TEST(Team, TakesASilentOneToHangWhereItsPathEndedAndForgetsItLater) {
   Hearing h;
   h.hear(10.0, message(10.0, 0.0, intent()));
   EXPECT_EQ(h.team.paths(10.9, 10.9)[0].position_sigma, 0.0);
@@ -196,9 +196,23 @@ TEST(Team, DoubtsASilentOneMoreAndMoreAndForgetsIt) {
   EXPECT_EQ(h.team.vehicles(), 1U);
   EXPECT_FALSE(h.news(11.9, "team_lost"));
   h.team.listen(12.1, own(12.1));
-  EXPECT_EQ(h.team.vehicles(), 0U);
-  EXPECT_TRUE(h.team.paths(12.1, 12.1).empty());
   EXPECT_TRUE(h.news(12.1, "team_lost"));
+  EXPECT_FALSE(h.news(13.5, "team_lost"));
+  ASSERT_EQ(h.team.paths(30.0, 30.0).size(), 1U);
+  EXPECT_EQ(h.team.paths(30.0, 30.0)[0].until, planner::kInfinity);  // it gives no way
+  h.team.listen(10.1 + Team::kHangs, own(10.1 + Team::kHangs));
+  EXPECT_EQ(h.team.vehicles(), 0U);
+  EXPECT_TRUE(h.team.paths(71.0, 71.0).empty());
+}
+
+TEST(Team, ASilentOneThatBeganAnewIsNotAvoidedTwice) {
+  Hearing h;
+  h.hear(10.0, message(10.0, 0.0, intent(2), 100));
+  h.team.listen(13.0, own(13.0));
+  EXPECT_EQ(h.team.paths(13.0, 13.0).size(), 1U);
+  h.hear(13.1, message(13.1, 0.0, intent(2), 200));
+  h.team.listen(13.2, own(13.2));
+  EXPECT_EQ(h.team.paths(13.2, 13.2).size(), 1U);
 }
 
 TEST(Team, GivesTheLowerIdTheRightOfWay) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 namespace jink::bridge {
@@ -245,7 +246,7 @@ TEST(TrackTable, TellsTheVehiclesOwnTrack) {
                           track(3, {1, 0, 0}, -velocity)}));
     table.find_self(t, own, velocity, 0.3);
     const auto seen = table.predict(t, 1.0);
-    ASSERT_EQ(seen.size(), t < 10.0 + TrackTable::kSelfTime - 1e-6 ? 3U : 2U) << t;
+    ASSERT_EQ(seen.size(), own.norm() <= TrackTable::kSelfWay ? 3U : 2U) << t;
     EXPECT_EQ(seen[seen.size() - 2].id, 2U);
   }
   EXPECT_EQ(table.own_tracks(), 1);
@@ -255,13 +256,41 @@ TEST(TrackTable, TellsTheVehiclesOwnTrack) {
   EXPECT_EQ(table.own_tracks(), 0);
 }
 
-TEST(TrackTable, CountsTheWritersThatFellSilent) {
+// A pole beside a vehicle that hangs there, and somebody who walks up to it.
+TEST(TrackTable, WhatStandsBesideAHangingVehicleIsNotItsOwnTrack) {
+  TrackTable table(kCoast);
+  for (double t = 10.0; t < 13.0; t += 0.05) {
+    Track pole = track(1, {0.25, 0, 0});
+    pole.position_sigma = 0.3;
+    Track walker = track(2, {1.4 - 0.5 * (t - 10.0), 0, 0}, {-0.5, 0, 0});
+    walker.position_sigma = 0.3;
+    table.ingest(message(t, 0.0, {pole, walker}));
+    table.find_self(t, Vec3::Zero(), Vec3::Zero(), 0.3);
+    ASSERT_EQ(table.predict(t, 1.0).size(), 2U);
+  }
+}
+
+TEST(TrackTable, ManyTracksOfTwoWritersThatNumberAlikeAllLive) {
+  TrackTable table(kCoast);
+  std::vector<Track> many;
+  for (std::uint64_t id = 0; id < 5000; ++id) many.push_back(track(id, {static_cast<double>(id), 0, 0}));
+  table.ingest(message(10.0, 0.0, many, 1));
+  table.ingest(message(10.0, 0.0, many, 2));
+  std::set<std::uint64_t> ids;
+  for (const Track& t : table.predict(10.0, 1.0)) ids.insert(t.id);
+  EXPECT_EQ(ids.size(), 10000U);
+}
+
+TEST(TrackTable, CountsTheWritersThatLive) {
   TrackTable table(kCoast);
   table.ingest(message(10.0, 0.0, {}, 1));
   for (double t = 10.0; t < 20.0; t += 0.5) table.ingest(message(t, 0.0, {}, 2));
-  EXPECT_EQ(table.silent_writers(10.5, 1.0), 0);
-  EXPECT_EQ(table.silent_writers(19.6, 1.0), 1);
-  EXPECT_EQ(table.silent_writers(10.0 + TrackTable::kForgetWriter + 1.0, 60.0), 0);
+  EXPECT_EQ(table.live_writers(10.5, 1.0), 2);
+  EXPECT_EQ(table.live_writers(19.6, 1.0), 1);
+  TrackMessage aircraft = message(20.0, 0.0, {}, 3);
+  aircraft.watches = false;
+  table.ingest(aircraft);
+  EXPECT_EQ(table.live_writers(20.0, 1.0), 1);
 }
 
 TEST(TrackTable, AWriterThatDoesNotStampIsTakenAsPrompt) {
