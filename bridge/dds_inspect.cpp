@@ -298,7 +298,7 @@ void add_alternatives(std::vector<Check>& checks, std::vector<Check> alternative
   for (Check& check : alternatives) {
     if (idle(check) && !all_idle) {
       check.level = Check::Level::kOk;
-      check.finding += "; another one is there";
+      check.finding += "; another source speaks";
       check.remedy.clear();
     }
     checks.push_back(std::move(check));

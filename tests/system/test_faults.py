@@ -10,10 +10,12 @@ hit. The faults are the simulator's (the scenario's `faults`), or come from this
 import concurrent.futures
 import dataclasses
 import math
+import pathlib
 import queue
 import random
 import signal
 import socket
+import sys
 import time
 import traceback
 from typing import Callable
@@ -116,6 +118,12 @@ def other_system(autopilot, system):
     return during
 
 
+def malformed_payloads(flight):
+    flight.wait_for_flight(0.0)
+    script = pathlib.Path(__file__).with_name("malformed_tracks.py")
+    flight.arena.start("malformed", [sys.executable, script, "--domain", flight.arena.domain, "--duration", 4])
+
+
 def stalled_process(seconds):
     def during(flight):
         flight.wait_for_flight()
@@ -140,6 +148,13 @@ def killed_and_started_again(pause):
 
 def dropped_tracks(flight, summary):
     check(summary["dropped_tracks"] > 0, f"{summary['dropped_tracks']} tracks were left out")
+
+
+def keeps_up(flight, summary):
+    """All tracks of all messages, 20 a second."""
+    messages = [r for r in flight.arena.log("fly.jsonl", "tracks") if len(r["tracks"]) > 2000]
+    rate = (len(messages) - 1) / (messages[-1]["t"] - messages[0]["t"])
+    check(rate > 18.0, f"{rate:.1f} messages of over 2000 tracks in a second")
 
 
 def stream_stays_stopped(flight, summary):
@@ -189,6 +204,8 @@ CASES = [
     Case("obstacle_at_short_range", scenario={"sensing": {"range": 3.5}}),
     Case("garbage_in_tracks", [at(0, "tracks_garbage")], events=("tracks_refused",), after=dropped_tracks),
     Case("ten_thousand_tracks", [at(1.0, "tracks_flood", count=10000)]),
+    Case("two_thousand_tracks", [at(0, "tracks_flood", count=2000)], after=keeps_up),
+    Case("malformed_payloads", during=malformed_payloads, events=("tracks_malformed",)),
     Case("own_track", [at(0, "tracks_self")], events=("tracks_self",)),
     Case("writers_clock_off_by_an_hour", [at(0, "tracks_clock", offset=3600)], events=("tracks_clock",)),
     Case("random_bytes", during=random_bytes),
