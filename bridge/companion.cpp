@@ -297,8 +297,10 @@ void Companion::move(double now, const Decision& decision) {
   new_plan_ = false;
   const Setpoint setpoint = stream_.setpoint(now, heading(now));
   if (!parts_.link.send(setpoint)) {
-    if (unsent_since_ < 0.0) event(now, "send_failed", "setpoints cannot be sent");
-    if (unsent_since_ < 0.0) unsent_since_ = now;
+    if (unsent_since_ < 0.0) {
+      unsent_since_ = now;
+      event(now, "send_failed", "setpoints cannot be sent");
+    }
     return;
   }
   if (unsent_since_ >= 0.0) event(now, "send_works", "setpoints can be sent again");

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bridge/dds_support.hpp"
+#include "bridge/dds_track_feed.hpp"
 
 namespace jink::bridge {
 
@@ -144,48 +145,16 @@ std::optional<DecodedTracks> decode_tracked_objects(std::span<const std::uint8_t
   return whole ? std::optional(std::move(message)) : std::nullopt;
 }
 
-class DdsAutowareReader::Impl {
+class DdsAutowareReader::Impl : public DdsTrackFeed {
  public:
   Impl(DdsNode& node, const Clock& clock)
-      : clock_(clock),
-        reader_(node, kAutowareTopic, kAutowareType,
-                [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
-
-  bool poll(TrackMessage& message) { return inbox_.poll(message); }
-  void notify(Wake& wake) { inbox_.notify(wake); }
-
-  TrackSourceStatus status() const {
-    TrackSourceStatus status = inbox_.status();
-    status.writers = reader_.writers();
-    status.malformed = malformed_;
-    if (status.last_refusal.empty()) status.last_refusal = reader_.mismatch();
-    return status;
-  }
-
-  std::uint64_t overruns() const { return inbox_.overruns(); }
-  std::uint64_t malformed() const { return malformed_; }
+      : DdsTrackFeed(node, clock, {kAutowareTopic, kAutowareType, decode_tracked_objects, refuse_frame}) {}
 
  private:
-  // On Fast DDS's thread.
-  void accept(const Payload& payload, std::uint64_t writer) {
-    const double received = clock_.now();
-    std::optional<DecodedTracks> message = decode_tracked_objects(payload);
-    if (!message) {
-      ++malformed_;
-    } else if (message->frame_id != "map") {
-      inbox_.refuse_frame("TrackedObjects: frame_id '" + printable(message->frame_id) + "' is not 'map'");
-    } else {
-      message->tracks.writer = writer;
-      message->tracks.received = received;
-      message->tracks.stamp_age = system_time() - message->stamp_unix_s;
-      inbox_.put(std::move(message->tracks), message->why);
-    }
+  static std::string refuse_frame(const std::string& frame_id) {
+    if (frame_id == "map") return {};
+    return "TrackedObjects: frame_id '" + printable(frame_id) + "' is not 'map'";
   }
-
-  const Clock& clock_;
-  std::atomic<std::uint64_t> malformed_ = 0;
-  TrackInbox inbox_;
-  PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
 DdsAutowareReader::DdsAutowareReader(DdsNode& node, const Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}

@@ -8,6 +8,7 @@
 
 #include "ObstacleTracks.h"
 #include "bridge/dds_support.hpp"
+#include "bridge/dds_track_feed.hpp"
 #include "bridge/frames.hpp"
 #include "bridge/track_inbox.hpp"
 
@@ -69,48 +70,16 @@ std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t
   return whole ? std::optional(std::move(message)) : std::nullopt;
 }
 
-class DdsTrackReader::Impl {
+class DdsTrackReader::Impl : public DdsTrackFeed {
  public:
   Impl(DdsNode& node, const Clock& clock)
-      : clock_(clock), reader_(node, kTracksTopic, kTracksType, [this](const Payload& payload, std::uint64_t writer) {
-          accept(payload, writer);
-        }) {}
-
-  bool poll(TrackMessage& message) { return inbox_.poll(message); }
-  void notify(Wake& wake) { inbox_.notify(wake); }
-
-  TrackSourceStatus status() const {
-    TrackSourceStatus status = inbox_.status();
-    status.writers = reader_.writers();
-    status.malformed = malformed_;
-    if (const std::string mismatch = reader_.mismatch(); status.last_refusal.empty()) status.last_refusal = mismatch;
-    return status;
-  }
-
-  std::uint64_t overruns() const { return inbox_.overruns(); }
-  std::uint64_t malformed() const { return malformed_; }
+      : DdsTrackFeed(node, clock, {kTracksTopic, kTracksType, decode_obstacle_tracks, refuse_frame}) {}
 
  private:
-  // The payload as a message into the inbox, or refused. On Fast DDS's thread.
-  void accept(const Payload& payload, std::uint64_t writer) {
-    const double received = clock_.now();
-    std::optional<DecodedTracks> message = decode_obstacle_tracks(payload);
-    if (!message) {
-      ++malformed_;
-    } else if (message->frame_id != "map" && message->frame_id != "ned") {
-      inbox_.refuse_frame("frame_id '" + printable(message->frame_id) + "' is neither 'map' nor 'ned'");
-    } else {
-      message->tracks.writer = writer;
-      message->tracks.received = received;
-      message->tracks.stamp_age = system_time() - message->stamp_unix_s;
-      inbox_.put(std::move(message->tracks), message->why);
-    }
+  static std::string refuse_frame(const std::string& frame_id) {
+    if (frame_id == "map" || frame_id == "ned") return {};
+    return "frame_id '" + printable(frame_id) + "' is neither 'map' nor 'ned'";
   }
-
-  const Clock& clock_;
-  std::atomic<std::uint64_t> malformed_ = 0;
-  TrackInbox inbox_;
-  PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
 DdsTrackReader::DdsTrackReader(DdsNode& node, const Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
