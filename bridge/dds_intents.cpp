@@ -9,43 +9,12 @@
 #include <utility>
 
 #include "Intents.h"
+#include "bridge/dds_intent_messages.hpp"
 #include "bridge/dds_support.hpp"
 
 namespace jink::bridge {
 
-namespace {
-
 using planner::Vec3;
-
-constexpr std::size_t kWirePoint_bytes = 4 * 8;
-
-// In the order of the IDL. False where the path is longer than is looked at.
-bool take_intent(CdrInput& input, Intent& intent) {
-  intent.vehicle = input.take<std::uint64_t>();
-  Geodetic origin;
-  origin.latitude_deg = input.take<double>();
-  origin.longitude_deg = input.take<double>();
-  origin.altitude_m = input.take<double>();
-  const bool unknown =
-      std::isnan(origin.latitude_deg) && std::isnan(origin.longitude_deg) && std::isnan(origin.altitude_m);
-  if (!unknown) intent.origin = origin;
-  intent.radius = input.take<double>();
-  intent.margin = input.take<double>();
-  const std::uint32_t count = input.take_length(kWirePoint_bytes);
-  if (count > IntentLimits::kPoints) return false;
-  intent.path.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    planner::TimedPoint point;
-    point.t = input.take<double>();
-    const auto x = input.take<double>();
-    const auto y = input.take<double>();
-    point.position = Vec3(x, y, input.take<double>());
-    intent.path.push_back(point);
-  }
-  return true;
-}
-
-}  // namespace
 
 class DdsIntents::Impl {
  public:
@@ -104,23 +73,11 @@ class DdsIntents::Impl {
     IntentMessage message;
     message.writer = writer;
     message.received = clock_.now();
-    StampedFrame header;
-    bool short_enough = true;
-    const bool whole = decode(payload, [&](CdrInput& input) {
-      header = take_header(input);
-      short_enough = take_intent(input, message.intent);
-      return true;
-    });
-    message.stamp_age = system_time() - header.stamp_unix_s;
-    std::string why;
-    if (!whole) {
-      why = "a payload that is no jink_msgs/Intent";
-    } else if (header.frame_id != "map") {
-      why = "frame_id '" + printable(header.frame_id) + "' is not 'map'";
-    } else if (!short_enough) {
-      why = "a path of more than " + std::to_string(IntentLimits::kPoints) + " points";
-    } else if (const char* bad = refusal(message.intent); bad != nullptr) {
-      why = "vehicle " + std::to_string(system_of(message.intent.vehicle)) + ": " + bad;
+    std::string why = "a payload that is no jink_msgs/Intent";
+    if (auto decoded = decode_intent(payload)) {
+      message.stamp_age = system_time() - decoded->stamp_unix_s;
+      message.intent = std::move(decoded->intent);
+      why = std::move(decoded->why);
     }
     const std::scoped_lock lock(mutex_);
     if (why.empty() && newest_.size() >= kWriters && !newest_.contains(writer)) why = "too many writers at once";

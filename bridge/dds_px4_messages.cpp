@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bridge/dds_support.hpp"
+#include "bridge/cdr_input.hpp"
 #include "bridge/frames.hpp"
 
 namespace jink::bridge::px4 {

@@ -7,7 +7,6 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
-#include <fastcdr/exceptions/Exception.h>
 
 #include <atomic>
 #include <cstddef>
@@ -27,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "bridge/cdr_input.hpp"
 #include "bridge/dds_node.hpp"
 
 namespace jink::bridge {
@@ -162,57 +162,10 @@ bool PayloadWriter::write_message(const Generated& message) {
   return write(buffer_);
 }
 
-/// A payload that is being read, field by field, in the order of its type. Every call that would go beyond the payload
-/// throws eprosima::fastcdr::exception::Exception, which decode() below catches.
-class CdrInput {
- public:
-  explicit CdrInput(std::span<const std::uint8_t> payload);
-
-  template <typename T>
-  T take() {
-    T value{};
-    cdr_ >> value;
-    return value;
-  }
-  /// The length of a sequence whose elements take at least `element_bytes` each; one that the rest of the payload
-  /// cannot hold is thrown out here, before anything is allocated for it.
-  std::uint32_t take_length(std::size_t element_bytes);
-  [[nodiscard]] eprosima::fastcdr::Cdr& cdr() { return cdr_; }
-
- private:
-  std::size_t size_;
-  eprosima::fastcdr::FastBuffer buffer_;
-  eprosima::fastcdr::Cdr cdr_;
-};
-
-/// Runs `read(CdrInput&)`, which returns whether what it read makes sense; false also when it ran out of bytes.
-template <typename Read>
-[[nodiscard]] bool decode(std::span<const std::uint8_t> payload, Read read) {
-  try {
-    CdrInput input(payload);
-    return read(input);
-  } catch (const eprosima::fastcdr::exception::Exception&) {
-    return false;
-  }
-}
-
-/// ROS 2's std_msgs/Header.
-struct StampedFrame {
-  double stamp_unix_s = 0.0;
-  std::string frame_id;
-};
-StampedFrame take_header(CdrInput& input);
-
 /// "DURABILITY", "RELIABILITY", ...: the name of a DDS QoS policy by its number.
 std::string policy_name(std::uint32_t policy_id);
 
-/// FNV-1a over bytes.
-std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t hash = 0xcbf29ce484222325U);
-
 /// System time, seconds since 1970: a message's stamp is of that clock, so its age needs it and not the companion's.
 double system_time();
-
-/// A text of a stranger, short and printable, for the terminal and the log.
-std::string printable(const std::string& text);
 
 }  // namespace jink::bridge

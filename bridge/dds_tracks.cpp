@@ -9,7 +9,7 @@
 #include "ObstacleTracks.h"
 #include "bridge/dds_support.hpp"
 #include "bridge/dds_track_feed.hpp"
-#include "bridge/frames.hpp"
+#include "bridge/dds_track_messages.hpp"
 #include "bridge/track_inbox.hpp"
 
 namespace jink::bridge {
@@ -19,33 +19,6 @@ namespace {
 using planner::Track;
 using planner::Vec3;
 
-constexpr std::size_t kWireTrack_bytes = 8 + 9 * 8 + 3 * 8;
-
-Vec3 take_vec3(CdrInput& input) {
-  const auto x = input.take<double>();
-  const auto y = input.take<double>();
-  const auto z = input.take<double>();
-  return {x, y, z};
-}
-
-// In the order of the IDL.
-Track take_track(CdrInput& input, bool ned) {
-  Track track;
-  track.id = input.take<std::uint64_t>();
-  track.position = take_vec3(input);
-  track.velocity = take_vec3(input);
-  track.acceleration = take_vec3(input);
-  if (ned) {
-    track.position = enu_from_ned(track.position);
-    track.velocity = enu_from_ned(track.velocity);
-    track.acceleration = enu_from_ned(track.acceleration);
-  }
-  track.radius = input.take<double>();
-  track.position_sigma = input.take<double>();
-  track.velocity_sigma = input.take<double>();
-  return track;
-}
-
 template <typename Wire>
 void to_wire(const Vec3& v, Wire& wire) {
   wire.x(v.x());
@@ -54,21 +27,6 @@ void to_wire(const Vec3& v, Wire& wire) {
 }
 
 }  // namespace
-
-std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
-  DecodedTracks message;
-  const bool whole = decode(payload, [&](CdrInput& input) {
-    const StampedFrame header = take_header(input);
-    message.frame_id = header.frame_id;
-    message.stamp_unix_s = header.stamp_unix_s;
-    const std::uint32_t count = input.take_length(kWireTrack_bytes);
-    TrackSieve sieve(message.tracks, count);
-    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
-    message.why = sieve.why();
-    return true;
-  });
-  return whole ? std::optional(std::move(message)) : std::nullopt;
-}
 
 class DdsTrackReader::Impl : public DdsTrackFeed {
  public:

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -17,10 +16,6 @@ namespace jink::bridge {
 
 inline constexpr const char* kTracksTopic = "rt/jink/obstacle_tracks";  ///< ROS 2: /jink/obstacle_tracks
 inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks_";
-
-/// Decodes a payload (encapsulation and CDR); nothing where it is no ObstacleTracks. Tracks in the frame `ned` come out
-/// in ENU. Pure.
-[[nodiscard]] std::optional<DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload);
 
 /// Reads the topic best effort, volatile, keep last, so that a writer of any reliability and durability matches; by
 /// the node's transports. Messages are checked and converted to ENU on Fast DDS's

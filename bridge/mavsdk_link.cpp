@@ -59,19 +59,17 @@ void MavsdkLink::Impl::Listener::subscribe(std::span<const Interest> interests) 
   }
 }
 
-// On MAVSDK's callback thread. Nothing may be thrown through C: parsing and the handlers do not throw on any input, and
-// running out of memory ends the process by noexcept.
+// On MAVSDK's callback thread. Nothing may be thrown through C: decoding and the handlers do not throw on any input,
+// and running out of memory ends the process by noexcept.
 void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, void* subscription) noexcept {  // NOLINT
   const Subscription& s = *static_cast<const Subscription*>(subscription);
   Impl& link = s.self->link_;
   const bool wanted = message.system_id == s.self->system_id_ &&
                       (s.interest.from == From::kAnyComponent || message.component_id == kAutopilotComponent);
   if (wanted) {
-    const json fields = json::parse(message.fields_json, nullptr, /*allow_exceptions=*/false);
-    if (fields.is_object()) {
-      (link.*s.interest.handler)({message.system_id, message.component_id, fields});
+    if (const auto decoded = mavlink::decode(s.interest.name, message.fields_json)) {
+      link.take({message.system_id, message.component_id}, *decoded);
     } else {
-      const std::scoped_lock lock(link.mutex_);
       link.malformed();
     }
   }
@@ -79,7 +77,6 @@ void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, vo
 }
 
 MavsdkLink::Impl::Impl(const std::string& url, const Clock& clock) : clock_(clock), created_(clock.now()) {
-  state_.landed_state_known = false;
   capture_mavsdk_log();
   const ConfigurationHandle configuration(
       mavsdk_configuration_create_with_component_type(MAVSDK_COMPONENT_TYPE_COMPANION_COMPUTER));
@@ -114,7 +111,22 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
     if (found) {
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
-      autopilot_->subscribe(interests());
+      static constexpr std::array<Interest, 15> kInterests{{{"HEARTBEAT"},
+                                                            {"LOCAL_POSITION_NED"},
+                                                            {"ATTITUDE"},
+                                                            {"ODOMETRY"},
+                                                            {"SYS_STATUS"},
+                                                            {"EXTENDED_SYS_STATE"},
+                                                            {"ESTIMATOR_STATUS"},
+                                                            {"BATTERY_STATUS"},
+                                                            {"GPS_GLOBAL_ORIGIN"},
+                                                            {"COMMAND_ACK"},
+                                                            {"AUTOPILOT_VERSION"},
+                                                            {"TIMESYNC"},
+                                                            {"PARAM_VALUE"},
+                                                            {"STATUSTEXT"},
+                                                            {"ADSB_VEHICLE", From::kAnyComponent}}};
+      autopilot_->subscribe(kInterests);
       ready_ = true;
       request_streams({false, true, true, true});
       watcher_ = std::jthread([this](const std::stop_token& end) { watch_other_systems(end); });
@@ -127,10 +139,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
 
 // MAVSDK's mavlink_direct hears one system; whoever else speaks on the connection gets a listener of its own.
 void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
-  static constexpr std::array<Interest, 2> kInterests{{
-      {"HEARTBEAT", &Impl::on_other_heartbeat, From::kAutopilot},
-      {"ADSB_VEHICLE", &Impl::on_adsb_vehicle, From::kAnyComponent},
-  }};
+  static constexpr std::array<Interest, 2> kInterests{{{"HEARTBEAT"}, {"ADSB_VEHICLE", From::kAnyComponent}}};
   std::set<std::uint32_t> known{system_id_};
   std::mutex nobody_elses;
   std::condition_variable_any never;
@@ -193,7 +202,7 @@ bool MavsdkLink::Impl::send(const Setpoint& setpoint) {
                     {"yaw_rate", 0.0}};
   if (!transmit("SET_POSITION_TARGET_LOCAL_NED", fields)) return false;
   const std::scoped_lock lock(mutex_);
-  ++counts_.setpoints_sent;
+  ++setpoints_sent_;
   return true;
 }
 
@@ -249,12 +258,14 @@ std::vector<std::optional<px4::Parameter>> MavsdkLink::Impl::read_parameters(std
   return result;
 }
 
+void MavsdkLink::Impl::malformed() {
+  const std::scoped_lock lock(mutex_);
+  telemetry_.malformed();
+}
+
 std::optional<LinkNotice> MavsdkLink::Impl::next_notice() {
   const std::scoped_lock lock(mutex_);
-  if (notices_.empty()) return std::nullopt;
-  LinkNotice oldest = std::move(notices_.front());
-  notices_.pop_front();
-  return oldest;
+  return telemetry_.next_notice();
 }
 
 bool MavsdkLink::Impl::next_adsb(AdsbReport& report) {
@@ -263,18 +274,6 @@ bool MavsdkLink::Impl::next_adsb(AdsbReport& report) {
   report = adsb_.front();
   adsb_.pop_front();
   return true;
-}
-
-LinkInfo MavsdkLink::Impl::info() const {
-  const std::scoped_lock lock(mutex_);
-  LinkInfo info = info_;
-  info.other_systems.assign(other_autopilots_.begin(), other_autopilots_.end());
-  return info;
-}
-
-LinkCounts MavsdkLink::Impl::counts() const {
-  const std::scoped_lock lock(mutex_);
-  return counts_;
 }
 
 MavsdkLink::MavsdkLink(const std::string& connection_url, const Clock& clock)

@@ -13,42 +13,12 @@
 #include <vector>
 
 #include "bridge/adsb_tracks.hpp"
+#include "bridge/autopilot_telemetry.hpp"
 #include "bridge/clock.hpp"
 #include "bridge/px4.hpp"
 #include "bridge/vehicle_link.hpp"
 
 namespace jink::bridge {
-
-/// What has come from the autopilot since it was found; for `doctor` and summaries.
-struct LinkCounts {
-  std::uint64_t heartbeats = 0;
-  std::uint64_t positions = 0;  ///< LOCAL_POSITION_NED
-  std::uint64_t attitudes = 0;
-  std::uint64_t odometries = 0;  ///< usable ones
-  std::uint64_t setpoints_sent = 0;
-  std::uint64_t malformed = 0;         ///< messages left out: missing or non-finite fields
-  std::uint64_t late = 0;              ///< positions left out: older than one that had come before
-  std::uint32_t other_autopilots = 0;  ///< systems beside ours whose component 1 calls itself an autopilot
-  std::uint64_t dropped_adsb = 0;      ///< reports thrown away because nobody took them
-};
-
-/// What the autopilot has told of itself, beside VehicleState.
-struct LinkInfo {
-  std::optional<std::uint32_t> autopilot;    ///< MAV_AUTOPILOT; px4::kAutopilotPx4
-  std::optional<px4::Version> version;       ///< AUTOPILOT_VERSION, asked for until it comes
-  std::optional<std::uint32_t> estimator;    ///< ESTIMATOR_STATUS.flags
-  std::optional<double> battery_percent;     ///< SYS_STATUS.battery_remaining
-  bool rc_receiver = false;                  ///< SYS_STATUS: present and healthy
-  std::optional<double> round_trip_s;        ///< the shortest TIMESYNC answer; asked once a second
-  std::vector<std::uint32_t> other_systems;  ///< system ids of LinkCounts::other_autopilots
-};
-
-/// Something that a person should read: "second_autopilot", "autopilot_rebooted", "autopilot_text" (STATUSTEXT, which
-/// PX4 sends only to a link on which a ground station's heartbeat arrives too).
-struct LinkNotice {
-  std::string name;
-  std::string detail;
-};
 
 /// How a stream of messages came since restart_rates().
 struct StreamRate {
@@ -81,8 +51,8 @@ class MavsdkLink final : public VehicleLink {
  public:
   static constexpr double kTelemetryHz = 50.0;
   static constexpr double kOdometryHz = 30.0;  ///< what PX4 sends a companion unasked
-  static constexpr double kPositionMaxAge_s = 1.0;
-  static constexpr double kReboot_s = 2.0;
+  static constexpr double kPositionMaxAge_s = AutopilotTelemetry::kPositionMaxAge_s;
+  static constexpr double kReboot_s = AutopilotTelemetry::kReboot_s;
 
   /// Opens `connection_url` (udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT, serial:///dev/NAME:BAUD, ...)
   /// and waits for nobody. `clock` must outlive the link.

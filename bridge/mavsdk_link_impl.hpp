@@ -17,11 +17,11 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/autopilot_telemetry.hpp"
 #include "bridge/command_tracker.hpp"
-#include "bridge/estimate_resets.hpp"
+#include "bridge/mavlink_messages.hpp"
 #include "bridge/mavsdk_handles.hpp"
 #include "bridge/mavsdk_link.hpp"
-#include "bridge/status_text.hpp"
 
 namespace jink::bridge {
 
@@ -48,16 +48,13 @@ class MavsdkLink::Impl {
   std::uint32_t autopilot_system_id() const { return ready_ ? system_id_ : 0; }
 
  private:
-  struct Message {
+  struct Sender {
     std::uint32_t system;
     std::uint32_t component;
-    const nlohmann::json& fields;
   };
-  using Handler = void (Impl::*)(const Message& message);
   enum class From { kAutopilot, kAnyComponent };
   struct Interest {
     const char* name;
-    Handler handler;
     From from = From::kAutopilot;
   };
 
@@ -99,36 +96,31 @@ class MavsdkLink::Impl {
     double largest_gap = 0.0;
   };
 
-  static std::vector<Interest> interests();
   void watch_other_systems(const std::stop_token& stop);
   bool transmit(const char* name, const nlohmann::json& fields) const;
   bool transmit(const px4::CommandLong& command) const;
   void request_streams(const std::array<bool, kStreams>& slow) const;
 
-  // On MAVSDK's callback thread; each counts what it cannot read.
-  void on_heartbeat(const Message& message);
-  void on_other_heartbeat(const Message& message);
-  void on_local_position(const Message& message);
-  void on_attitude(const Message& message);
-  void on_odometry(const Message& message);
-  void on_sys_status(const Message& message);
-  void on_extended_sys_state(const Message& message);
-  void on_estimator_status(const Message& message);
-  void on_battery_status(const Message& message);
-  void on_origin(const Message& message);
-  void on_command_ack(const Message& message);
-  void on_version(const Message& message);
-  void on_timesync(const Message& message);
-  void on_parameter(const Message& message);
-  void on_status_text(const Message& message);
-  void on_adsb_vehicle(const Message& message);
+  // On MAVSDK's callback thread, `now` by the companion's clock.
+  void take(const Sender& sender, const mavlink::Message& message);
+  void malformed();
+  void on(double now, const Sender& sender, const mavlink::Heartbeat& message);
+  void on(double now, const Sender& sender, const mavlink::LocalPosition& message);
+  void on(double now, const Sender& sender, const mavlink::Attitude& message);
+  void on(double now, const Sender& sender, const mavlink::Odometry& message);
+  void on(double now, const Sender& sender, const mavlink::CommandAck& message);
+  void on(double now, const Sender& sender, const mavlink::Timesync& message);
+  void on(double now, const Sender& sender, const mavlink::ParamValue& message);
+  void on(double now, const Sender& sender, const AdsbReport& message);
+  template <typename Other>  // what the picture of the autopilot alone takes in
+  void on(double /*now*/, const Sender& /*sender*/, const Other& message) {
+    const std::scoped_lock lock(mutex_);
+    telemetry_.on(message);
+  }
+  void on_other_heartbeat(const Sender& sender, const mavlink::Heartbeat& message);
 
   // With the mutex held.
-  void notice(std::string name, std::string detail);
   void tally(Stream stream, double now);
-  void boot_time(std::uint32_t boot_ms);
-  void restarted();
-  void malformed() { ++counts_.malformed; }
 
   const Clock& clock_;
   const double created_;
@@ -136,28 +128,19 @@ class MavsdkLink::Impl {
   std::uint32_t own_component_id_ = 0;
 
   mutable std::mutex mutex_;  // guards the next block
-  VehicleState state_;
-  LinkInfo info_;
-  EstimateResets resets_;
-  std::optional<std::uint32_t> boot_ms_;  // newest of LOCAL_POSITION_NED and ATTITUDE
-  std::optional<std::uint32_t> position_boot_ms_;
-  bool sys_status_heard_ = false;
-  std::string failed_health_;
-  bool estimator_ok_ = true;  // until it says otherwise
-  std::map<std::uint32_t, BatteryState> batteries_;
-  BatteryState remaining_ = BatteryState::kUnknown;  // by SYS_STATUS
-  LinkCounts counts_;
+  AutopilotTelemetry telemetry_;
+  std::uint64_t setpoints_sent_ = 0;
   std::array<Tally, kStreams> tallies_;
   std::array<std::uint64_t, kStreams> heard_{};
   std::array<std::uint64_t, kStreams> at_heartbeat_{};  // heard_ at the heartbeat before
   int odometry_requests_ = 0;
   double rates_since_ = 0.0;
   std::set<std::uint32_t> other_autopilots_;
-  StatusTexts texts_;
-  std::deque<LinkNotice> notices_;
   std::deque<AdsbReport> adsb_;
+  std::uint64_t dropped_adsb_ = 0;
   std::map<std::string, px4::Parameter> parameters_;  // answers to the request under way
   std::int64_t timesync_sent_ns_ = 0;
+  std::optional<double> round_trip_s_;
   CommandTracker commands_;
   std::condition_variable_any parameter_came_;
 

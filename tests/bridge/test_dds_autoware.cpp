@@ -14,6 +14,7 @@
 
 #include "TrackedObjects.h"
 #include "bridge/dds_support.hpp"
+#include "bridge/dds_track_messages.hpp"
 #include "tests/bridge/child_process.hpp"
 #include "tests/bridge/dds_testing.hpp"
 

@@ -30,44 +30,6 @@ using jink::bridge::testing::eventually;
 using jink::planner::Vec3;
 using nlohmann::json;
 
-TEST(Px4, KnowsTheStateOfABattery) {
-  const std::vector<BatteryState> expected{BatteryState::kUnknown,  BatteryState::kOk,       BatteryState::kLow,
-                                           BatteryState::kCritical, BatteryState::kCritical, BatteryState::kCritical,
-                                           BatteryState::kCritical, BatteryState::kOk,       BatteryState::kUnknown};
-  for (std::uint32_t state = 0; state < expected.size(); ++state) {
-    EXPECT_EQ(px4::battery_state(state), expected[state]) << state;
-  }
-  EXPECT_EQ(px4::battery_state_from_remaining(16.0), BatteryState::kOk);
-  EXPECT_EQ(px4::battery_state_from_remaining(15.0), BatteryState::kLow);
-  EXPECT_EQ(px4::battery_state_from_remaining(8.0), BatteryState::kLow);
-  EXPECT_EQ(px4::battery_state_from_remaining(7.0), BatteryState::kCritical);
-  EXPECT_EQ(px4::battery_state_from_remaining(-1.0), BatteryState::kUnknown);
-  EXPECT_EQ(px4::battery_state_from_remaining(std::nan("")), BatteryState::kUnknown);
-}
-
-TEST(Px4, ReadsVersionsAndParameters) {
-  EXPECT_EQ(px4::to_string(px4::version(0x01110040)), "1.17.0 alpha");
-  EXPECT_EQ(px4::to_string(px4::version(0x010F04FF)), "1.15.4");
-  EXPECT_EQ(px4::to_string(px4::version(0x010F0400)), "1.15.4 development");
-  EXPECT_EQ(px4::to_string(px4::version(0x010F0480)), "1.15.4 beta");
-  EXPECT_EQ(px4::to_string(px4::version(0x010F04C0)), "1.15.4 candidate");
-  const double five = 7.006492321624085e-45;  // the bytes of 5, read as a float
-  EXPECT_EQ(px4::parameter("A", 6, five, true).value, 5.0);
-  EXPECT_TRUE(px4::parameter("A", 6, five, true).integer);
-  EXPECT_EQ(px4::parameter("A", 6, 5.0, false).value, 5.0);
-  EXPECT_EQ(px4::parameter("A", 9, 0.5, true).value, 0.5);
-  EXPECT_FALSE(px4::parameter("A", 9, 0.5, true).integer);
-  EXPECT_TRUE(std::isnan(px4::parameter("A", 6, std::nan(""), true).value));  // -1 as a float is no number
-}
-
-TEST(Px4, SaysWhatTheEstimatorLacks) {
-  EXPECT_EQ(px4::estimator_complaints(895), "");
-  EXPECT_EQ(px4::estimator_complaints(895 & ~24U), "no horizontal position");
-  EXPECT_EQ(px4::estimator_complaints(895 | 1024U), "GPS glitch");
-  EXPECT_EQ(px4::estimator_complaints(0),
-            "no attitude, no horizontal velocity, no vertical velocity, no height, no horizontal position");
-}
-
 class MavsdkFaultTest : public jink::bridge::testing::MavsdkLinkTest {
  protected:
   // Connected, with a position and odometry flowing.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pure parts by hand-worked cases; the link over loopback UDP against tests/bridge/px4_peer.py, which shares no
-// code with it (pymavlink) and answers as PX4 does.
+// The link over loopback UDP against tests/bridge/px4_peer.py, which shares no code with it (pymavlink) and answers as
+// PX4 does.
 #include "bridge/mavsdk_link.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,6 @@
 #include <thread>
 #include <vector>
 
-#include "bridge/command_tracker.hpp"
 #include "bridge/px4.hpp"
 #include "tests/bridge/mavsdk_link_test.hpp"
 
@@ -27,125 +26,16 @@ namespace {
 namespace px4 = jink::bridge::px4;
 using jink::bridge::Command;
 using jink::bridge::CommandReport;
-using jink::bridge::CommandTracker;
 using jink::bridge::FlightMode;
 using jink::bridge::MavsdkLink;
 using jink::bridge::Setpoint;
 using jink::bridge::SteadyClock;
 using jink::bridge::VehicleState;
 using jink::bridge::testing::eventually;
-using jink::planner::Vec3;
-using nlohmann::json;
-
-// The custom_mode values of the heartbeat table in PX4 SITL recordings.
-TEST(Px4, NamesTheModesOfAHeartbeat) {
-  EXPECT_EQ(px4::flight_mode(12, 0x03040000), FlightMode::kHold);
-  EXPECT_EQ(px4::flight_mode(12, 0x02040000), FlightMode::kTakeoff);
-  EXPECT_EQ(px4::flight_mode(12, 0x04040000), FlightMode::kMission);
-  EXPECT_EQ(px4::flight_mode(12, 0x05040000), FlightMode::kReturn);
-  EXPECT_EQ(px4::flight_mode(12, 0x06040000), FlightMode::kLand);
-  EXPECT_EQ(px4::flight_mode(12, 0x09040000), FlightMode::kOther);  // precision landing
-  EXPECT_EQ(px4::flight_mode(12, 0x00060000), FlightMode::kOffboard);
-  EXPECT_EQ(px4::flight_mode(12, 0x00030000), FlightMode::kPosition);
-  EXPECT_EQ(px4::flight_mode(12, 0x00020000), FlightMode::kAltitude);
-  EXPECT_EQ(px4::flight_mode(12, 0x00010000), FlightMode::kManual);
-  EXPECT_EQ(px4::flight_mode(3, 0x00060000), FlightMode::kOther);  // another autopilot's numbers mean other things
-}
-
-TEST(Px4, NamesWhatHealthLacks) {
-  // Ready to arm, and in OFFBOARD without a stream: from recordings of PX4 SITL.
-  EXPECT_EQ(px4::failed_health(0x300402f, 0x301402f, 0x1320c83f), "");
-  EXPECT_EQ(px4::failed_health(0x300402f, 0x301402f, 0x320c83f), "pre-arm check");
-  EXPECT_EQ(px4::failed_health(0x300402f, 0x301402f, 0x1320c81b), "magnetometer, GPS");
-  EXPECT_EQ(px4::failed_health(0x24, 0x4, 0x10000000), "magnetometer");  // a GPS that is not enabled is not missed
-}
-
-TEST(Px4, KnowsAnEstimatorThatHoldsAPosition) {
-  EXPECT_TRUE(px4::estimator_has_local_position(1023));  // from recordings: on the ground, in flight, sinking
-  EXPECT_TRUE(px4::estimator_has_local_position(895));
-  EXPECT_TRUE(px4::estimator_has_local_position(831));
-  EXPECT_TRUE(px4::estimator_has_local_position(2 | 4 | 8 | 32));  // relative, as without GPS
-  EXPECT_FALSE(px4::estimator_has_local_position(2 | 4 | 32));
-  EXPECT_FALSE(px4::estimator_has_local_position(831 & ~32));
-  EXPECT_FALSE(px4::estimator_has_local_position(831 & ~2));
-  EXPECT_FALSE(px4::estimator_has_local_position(0));
-}
-
-std::string text(const std::optional<CommandReport>& report) {
-  if (!report) return "-";
-  return std::string(to_string(report->command)) + (report->accepted ? " yes" : " no: " + report->detail);
-}
-
-TEST(CommandTracker, ReportsTheOneAnswer) {
-  CommandTracker tracker;
-  tracker.start(Command::kArm, px4::kArmDisarm, 10.0);
-  EXPECT_EQ(text(tracker.next(10.5)), "-");
-  tracker.acknowledge(px4::kNavLand, 0, 10.5);  // another command's
-  EXPECT_EQ(text(tracker.next(10.5)), "-");
-  tracker.acknowledge(px4::kArmDisarm, 1, 10.6);
-  EXPECT_EQ(text(tracker.next(10.6)), "arm no: temporarily rejected");
-  tracker.acknowledge(px4::kArmDisarm, 0, 10.7);  // nothing open any more
-  EXPECT_EQ(text(tracker.next(99.0)), "-");
-}
-
-TEST(CommandTracker, TakesTheSecondAnswerToASetModeForTheTruth) {
-  CommandTracker tracker;
-  tracker.start(Command::kOffboard, px4::kDoSetMode, 0.0);
-  tracker.acknowledge(px4::kDoSetMode, 0, 0.005);
-  EXPECT_EQ(text(tracker.next(0.005)), "-");
-  tracker.acknowledge(px4::kDoSetMode, 1, 0.017);
-  EXPECT_EQ(text(tracker.next(0.017)), "offboard no: temporarily rejected");
-
-  tracker.start(Command::kHold, px4::kDoSetMode, 1.0);
-  tracker.acknowledge(px4::kDoSetMode, 0, 1.0);
-  tracker.acknowledge(px4::kDoSetMode, 0, 1.01);
-  EXPECT_EQ(text(tracker.next(1.01)), "hold yes");
-
-  tracker.start(Command::kHold, px4::kDoSetMode, 2.0);
-  tracker.acknowledge(px4::kDoSetMode, 2, 2.0);
-  EXPECT_EQ(text(tracker.next(2.0)), "hold no: denied");
-}
-
-TEST(CommandTracker, ContentsItselfWithOneAnswerToASetModeInTheEnd) {
-  CommandTracker tracker;
-  tracker.start(Command::kHold, px4::kDoSetMode, 0.0);
-  tracker.acknowledge(px4::kDoSetMode, 0, 0.1);
-  EXPECT_EQ(text(tracker.next(0.1 + 0.9 * CommandTracker::kSecondAnswer_s)), "-");
-  EXPECT_EQ(text(tracker.next(0.1 + 1.1 * CommandTracker::kSecondAnswer_s)), "hold yes");
-  EXPECT_EQ(text(tracker.next(9.0)), "-");
-}
-
-TEST(CommandTracker, ReportsSilence) {
-  CommandTracker tracker;
-  tracker.start(Command::kLand, px4::kNavLand, 5.0);
-  EXPECT_EQ(text(tracker.next(5.99)), "-");
-  EXPECT_EQ(text(tracker.next(6.0)), "land no: no answer");
-}
-
-TEST(CommandTracker, WaitsOnWhileInProgress) {
-  CommandTracker tracker;
-  tracker.start(Command::kArm, px4::kArmDisarm, 0.0);
-  tracker.acknowledge(px4::kArmDisarm, px4::kResultInProgress, 0.9);
-  EXPECT_EQ(text(tracker.next(1.5)), "-");
-  tracker.acknowledge(px4::kArmDisarm, 0, 1.6);
-  EXPECT_EQ(text(tracker.next(1.6)), "arm yes");
-}
-
-TEST(CommandTracker, SaysThatANewerRequestTookTheAnswer) {
-  CommandTracker tracker;
-  tracker.start(Command::kOffboard, px4::kDoSetMode, 0.0);
-  tracker.start(Command::kArm, px4::kArmDisarm, 0.0);
-  tracker.start(Command::kHold, px4::kDoSetMode, 0.0);
-  EXPECT_EQ(text(tracker.next(0.0)), "offboard no: superseded by hold");
-  tracker.acknowledge(px4::kDoSetMode, 0, 0.1);
-  tracker.acknowledge(px4::kDoSetMode, 0, 0.1);
-  tracker.acknowledge(px4::kArmDisarm, 0, 0.1);
-  EXPECT_EQ(text(tracker.next(0.1)), "hold yes");
-  EXPECT_EQ(text(tracker.next(0.1)), "arm yes");
-}
-
 using jink::bridge::testing::free_udp_port;
 using jink::bridge::testing::MavsdkLinkTest;
+using jink::planner::Vec3;
+using nlohmann::json;
 
 TEST_F(MavsdkLinkTest, StateArrivesInEnu) {
   connect();

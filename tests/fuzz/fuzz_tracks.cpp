@@ -4,8 +4,7 @@
 // since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
 #include <cmath>
 
-#include "bridge/dds_autoware.hpp"
-#include "bridge/dds_tracks.hpp"
+#include "bridge/dds_track_messages.hpp"
 #include "bridge/track_table.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MAVLink messages as MAVSDK hands them over, one after another, into the picture of the autopilot and the table of
+// aircraft: what these say then is finite and bounded, whatever came in. The input is a text; each line is the time
+// since the last one (ms), a message's name and its fields as JSON.
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "bridge/adsb_tracks.hpp"
+#include "bridge/autopilot_telemetry.hpp"
+#include "bridge/command_tracker.hpp"
+#include "bridge/mavlink_messages.hpp"
+#include "bridge/track_inbox.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace {
+
+namespace mavlink = jink::bridge::mavlink;
+using jink::bridge::AdsbReport;
+using jink::fuzz::require;
+
+constexpr double kLongestWait_ms = 1e7;
+constexpr std::size_t kLongestNotice = 600;
+
+class TheClock final : public jink::bridge::Clock {
+ public:
+  [[nodiscard]] double now() const override { return now_; }
+  void wait(double seconds) { now_ += seconds; }
+
+ private:
+  double now_ = 10.0;
+};
+
+bool printable(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+class Companion {
+ public:
+  void take(double wait_ms, std::string_view name, std::string_view json) {
+    clock_.wait(1e-3 * wait_ms);
+    if (const auto message = mavlink::decode(name, json)) {
+      std::visit([this](const auto& decoded) { on(decoded); }, *message);
+    } else {
+      telemetry_.malformed();
+    }
+    check_state();
+    check_aircraft();
+  }
+
+ private:
+  void on(const mavlink::Heartbeat& message) { (void)telemetry_.on(clock_.now(), message); }
+  void on(const mavlink::LocalPosition& message) { (void)telemetry_.on(clock_.now(), message); }
+  void on(const mavlink::CommandAck& message) {
+    commands_.start(jink::bridge::Command::kHold, message.command, clock_.now());
+    commands_.acknowledge(message.command, message.result, clock_.now());
+    const auto report = commands_.next(clock_.now() + 10.0);
+    require(report.has_value() && printable(report->detail), "an answer that is none");
+  }
+  void on(const mavlink::ParamValue& message) {
+    for (const bool bytewise : {true, false}) {
+      const auto value = jink::bridge::px4::parameter(message.name, message.type, message.field, bytewise).value;
+      require(!std::isinf(value), "a parameter is infinite");
+    }
+  }
+  void on(const mavlink::Timesync& /*message*/) {}
+  void on(const AdsbReport& message) {
+    report_ = message;
+    report_->received = clock_.now();
+  }
+  template <typename Other>
+  void on(const Other& message) {
+    telemetry_.on(message);
+  }
+
+  void check_state() {
+    const jink::bridge::VehicleState state = telemetry_.state(clock_.now());
+    const bool finite = state.position.allFinite() && state.velocity.allFinite() && std::isfinite(state.yaw) &&
+                        state.estimate_shift.allFinite();
+    require(finite, "a state that is not finite");
+    // A reset moves the estimate between two believable positions, and a flight has not many.
+    const double most = 2.1 * mavlink::Limits::kPosition * (1.0 + state.estimate_resets);
+    require(state.estimate_shift.norm() <= most, "an absurd shift of the estimate");
+    require(!state.local_position_ok || state.position_stamp >= 0.0, "a position that never came");
+    require(!state.origin || std::abs(state.origin->latitude_deg) <= 90.0, "an absurd origin");
+    const auto percent = telemetry_.info().battery_percent;
+    require(!percent || (*percent >= 0.0 && *percent <= 100.0), "an absurd battery");
+    while (const auto notice = telemetry_.next_notice()) {
+      require(printable(notice->detail), "a notice that is not printable");
+      require(notice->detail.size() <= kLongestNotice, "an endless notice");
+    }
+  }
+
+  void check_aircraft() {
+    jink::bridge::TrackMessage message;
+    while (aircraft_.poll(message)) {
+      for (const jink::planner::Track& track : message.tracks) {
+        require(jink::bridge::refusal(track) == nullptr, "an absurd aircraft");
+      }
+    }
+  }
+
+  TheClock clock_;
+  jink::bridge::AutopilotTelemetry telemetry_;
+  jink::bridge::CommandTracker commands_;
+  std::optional<AdsbReport> report_;
+  jink::bridge::AdsbTracks aircraft_{[this](AdsbReport& report) {
+                                       if (!report_) return false;
+                                       report = *report_;
+                                       report_.reset();
+                                       return true;
+                                     },
+                                     [this] { return telemetry_.state(clock_.now()).origin; }, clock_};
+};
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string_view rest(reinterpret_cast<const char*>(data), size);  // NOLINT: bytes as text
+  Companion companion;
+  while (!rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    double wait_ms = 0.0;
+    const auto number = std::from_chars(line.data(), line.data() + line.size(), wait_ms);
+    if (number.ec != std::errc() || !(wait_ms >= 0.0 && wait_ms <= kLongestWait_ms)) continue;
+    const std::string_view message(number.ptr, static_cast<std::size_t>(line.data() + line.size() - number.ptr));
+    const std::size_t begin = std::min(message.find_first_not_of(' '), message.size());
+    const std::size_t end = std::min(message.find(' ', begin), message.size());
+    companion.take(wait_ms, message.substr(begin, end - begin), message.substr(end));
+  }
+  return 0;
+}
