@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <utility>
+
+#include "bridge/words.hpp"
 
 namespace jink::bridge {
 namespace {
@@ -15,15 +16,9 @@ constexpr double kArrival = 0.3;           // m, to the last waypoint
 constexpr double kArrivalSpeed = 0.5;      // m/s
 constexpr double kPassing = 0.7;           // m, to a waypoint on the way
 constexpr double kTakeoffTolerance = 0.3;  // m
-constexpr double kLostReference = 1.2;     // m from the reference, beyond which plans start at the vehicle instead
-constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
-constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
-constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
 constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
-constexpr double kLongStall = 1.0;    // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
-constexpr double kMarginStep = 0.05;  // m, of a grown margin that is worth saying
-constexpr double kSlack = 0.9;        // of a setpoint's period, after which the next may go
+constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
 
 SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   SupervisorSettings result;
@@ -39,27 +34,7 @@ planner::Box flight_volume(const config::Mission& mission) {
   return box;
 }
 
-std::string metres(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f m", value);
-  return text.data();
-}
-
-double wrapped(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
-}
-
 }  // namespace
-
-std::optional<Percentiles> percentiles(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const auto rank = [&](double share) {
-    const auto n = static_cast<double>(values.size());
-    return values[static_cast<std::size_t>(std::max(0.0, std::ceil(share * n) - 1.0))];
-  };
-  return Percentiles{rank(0.5), rank(0.99), values.back()};
-}
 
 Companion::Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts)
     : mission_(mission),
@@ -72,10 +47,6 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
   if (mission.intents && parts_.intents != nullptr) {
     team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
   }
-}
-
-void Companion::event(double now, std::string_view name, const std::string& detail) {
-  for (FlightObserver* observer : parts_.observers) observer->on_event(now, name, detail);
 }
 
 bool Companion::step(double now) {
@@ -262,87 +233,6 @@ void Companion::start_plan(double now) {
   }
 }
 
-void Companion::move(double now, const Decision& decision) {
-  using Motion = Decision::Motion;
-  switch (decision.motion) {
-    case Motion::kNone:
-      return;
-    case Motion::kTakeoffPoint:
-      if (!stream_.active() || supervisor_.phase() == Phase::kEngaging) {
-        takeoff_point_ = state_.position;
-        takeoff_point_.z() = std::max(state_.position.z() + mission_.takeoff_height, mission_.min_height);
-        takeoff_point_.z() = std::min(takeoff_point_.z(), std::max(mission_.geofence.max.z(), state_.position.z()));
-        stream_.hold(takeoff_point_, now);
-      } else if (stream_.braking()) {  // a hazard of the climb has passed
-        stream_.hold(takeoff_point_, now);
-      }
-      break;
-    case Motion::kStay:
-      // Until OFFBOARD is confirmed the vehicle may be moving: it is to stop where it is then, not to come back.
-      stream_.hold(state_.position, now);
-      break;
-    case Motion::kFollow:
-      if (supervisor_.phase() == Phase::kFlying) start_plan(now);
-      break;
-    case Motion::kBrake:
-      brake(now);
-      // While a hazard lasts the planner goes on: when it has passed there is a plan to follow.
-      if (supervisor_.phase() == Phase::kFlying) start_plan(now);
-      break;
-  }
-  if (!stream_.active()) stream_.hold(state_.position, now);
-  const bool due = now - last_sent_ + 1e-6 >= kSlack / settings_.companion.setpoint_rate_hz;
-  if (!due && !new_plan_) return;
-  last_sent_ = now;
-  new_plan_ = false;
-  const Setpoint setpoint = stream_.setpoint(now, heading(now));
-  if (!parts_.link.send(setpoint)) {
-    if (unsent_since_ < 0.0) {
-      unsent_since_ = now;
-      event(now, "send_failed", "setpoints cannot be sent");
-    }
-    return;
-  }
-  if (unsent_since_ >= 0.0) event(now, "send_works", "setpoints can be sent again");
-  unsent_since_ = -1.0;
-  for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
-  const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.acceleration_lead);
-  if (unsent_track_ && now + lead >= unsent_from_) {
-    const double sent = parts_.clock != nullptr ? parts_.clock->now() : now;
-    summary_.track_to_setpoint_ms.push_back(1e3 * (sent - *unsent_track_));
-    unsent_track_.reset();
-  }
-}
-
-// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it
-// was lost, and the vehicle's position is known.
-void Companion::brake(double now) {
-  if (stream_.braking()) return;
-  const bool known = state_.position_stamp >= 0.0 && now - state_.position_stamp <= settings_.companion.stale_state;
-  const bool says_nothing =
-      !stream_.active() || stream_.plan(now).empty() ||
-      (stream_.reference(state_.position_stamp).position - state_.position).norm() > kLostReference;
-  if (!known || !says_nothing) {
-    stream_.brake(now);
-    return;
-  }
-  stream_.brake(now, planner::TimedPoint{now, state_.position, state_.velocity, Vec3::Zero()});
-}
-
-// Towards the waypoint, turning at a bounded rate from where the vehicle looks now.
-double Companion::heading(double now) {
-  if (!yaw_known_) {
-    yaw_ = state_.yaw;
-    yaw_known_ = true;
-  }
-  const Vec3 ahead = mission_.waypoints[waypoint_] - state_.position;
-  if (supervisor_.phase() == Phase::kFlying && ahead.head<2>().norm() > kYawDistance) {
-    const double most = kYawRate * std::max(0.0, now - last_step_);
-    yaw_ = wrapped(yaw_ + std::clamp(wrapped(std::atan2(ahead.y(), ahead.x()) - yaw_), -most, most));
-  }
-  return yaw_;
-}
-
 // Whoever watched in this flight is to go on watching, or somebody else in its place.
 int Companion::lost_writers(double now) {
   const int live = table_.live_writers(now, mission_.tracks.timeout_s);
@@ -376,118 +266,6 @@ void Companion::next_waypoint(double now) {
   event(now, "waypoint",
         std::to_string(waypoint_ + 1) + " of " + std::to_string(mission_.waypoints.size()) + " passed");
   ++waypoint_;
-}
-
-void Companion::measure(double now) {
-  const Phase phase = supervisor_.phase();
-  if (phase != Phase::kFlying && phase != Phase::kStopping) return;
-  if (flight_began_ < 0.0) {
-    flight_began_ = now;
-    Vec3 from = state_.position;
-    for (const Vec3& waypoint : mission_.waypoints) {
-      summary_.straight_length += (waypoint - from).norm();
-      from = waypoint;
-    }
-  }
-  summary_.flight_time = now - flight_began_;
-  summary_.max_speed = std::max(summary_.max_speed, state_.velocity.norm());
-  if (last_position_) summary_.path_length += (state_.position - *last_position_).norm();
-  last_position_ = state_.position;
-  if (stream_.active() && now - state_.position_stamp <= settings_.companion.stale_state) {
-    stream_.learn(state_.position_stamp, state_.position, std::max(0.0, now - last_step_));
-    const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
-    summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
-    tracking_error_ = std::max(error, tracking_error_ * std::exp(-std::max(0.0, now - last_step_) / kForgetting));
-  }
-}
-
-void Companion::record_hazard(double now) {
-  const std::string& hazard = supervisor_.hazard();
-  if (hazard.empty()) return;
-  const bool goes_on =
-      hazard == announced_hazard_ && !summary_.hazards.empty() && summary_.hazards.back().what == hazard;
-  if (!goes_on) summary_.hazards.push_back({hazard, now, 0.0});
-  summary_.hazards.back().duration = now - summary_.hazards.back().t;
-}
-
-// Events for what changed: nothing happens silently, and nothing is said fifty times a second.
-void Companion::announce(double now) {
-  if (team_) {
-    for (const Team::News& news : team_->news(now)) event(now, news.name, news.detail);
-  }
-  if (supervisor_.phase() != announced_phase_) {
-    announced_phase_ = supervisor_.phase();
-    event(now, "phase",
-          std::string(to_string(announced_phase_)) +
-              (supervisor_.done() ? ": " + std::string(to_string(supervisor_.outcome())) + ", " + supervisor_.reason()
-                                  : ""));
-  }
-  if (supervisor_.waiting_for() != announced_waiting_) {
-    announced_waiting_ = supervisor_.waiting_for();
-    if (!announced_waiting_.empty()) event(now, "waiting", announced_waiting_);
-  }
-  if (supervisor_.hazard() != announced_hazard_) {
-    announced_hazard_ = supervisor_.hazard();
-    event(now, announced_hazard_.empty() ? "hazard_over" : "hazard", announced_hazard_);
-  }
-  announce_vehicle(now);
-  announce_tracks(now);
-}
-
-void Companion::announce_vehicle(double now) {
-  if (state_.battery != announced_battery_) {
-    announced_battery_ = state_.battery;
-    event(now, "battery", std::string(to_string(announced_battery_)));
-  }
-  const double step = announced_margin_ ? 0.0 : kMarginStep;
-  const bool grown = margin() > settings_.horizon.margin + step;
-  if (grown != announced_margin_ && supervisor_.phase() == Phase::kFlying) {
-    announced_margin_ = grown;
-    event(now, "margin",
-          grown ? "tracking is off by " + metres(tracking_error_) + ": plans keep so much more from obstacles"
-                : "back to " + metres(settings_.horizon.margin));
-  }
-}
-
-// What was refused or put right, at most once a second.
-void Companion::announce_tracks(double now) {
-  const TrackSourceStatus tracks = parts_.tracks.status();
-  const TrackTableCounts& table = table_.counts();
-  summary_.dropped_tracks = tracks.dropped_tracks + table.invalid_tracks + table.surplus_tracks;
-  if (std::floor(now) == std::floor(last_step_)) return;
-  if (tracks.bad_frames != announced_tracks_.bad_frames || tracks.dropped_tracks != announced_tracks_.dropped_tracks)
-    event(now, "tracks_refused", tracks.last_refusal);
-  announced_tracks_ = tracks;
-  if (table.clock_offsets > 0 && announced_table_.clock_offsets == 0)
-    event(now, "tracks_clock",
-          "a track writer's stamps are not this computer's time: only changes of its delay are known");
-  if (table.late_messages != announced_table_.late_messages)
-    event(now, "tracks_late", std::to_string(table.late_messages) + " track messages came too late to be used");
-  if (table.frozen_messages != announced_table_.frozen_messages)
-    event(now, "tracks_frozen",
-          std::to_string(table.frozen_messages) +
-              " track messages left out: what should move had not moved since the one before");
-  if (table.invalid_tracks != announced_table_.invalid_tracks)
-    event(now, "tracks_refused", std::to_string(table.invalid_tracks) + " tracks that are none were left out");
-  if (table.surplus_tracks != announced_table_.surplus_tracks)
-    event(now, "tracks_refused",
-          std::to_string(table.surplus_tracks) + " tracks beyond " + std::to_string(TrackTable::kMost) +
-              " were left out");
-  announced_table_ = table;
-  if (table_.own_tracks() != announced_own_)
-    event(now, "tracks_self", std::to_string(table_.own_tracks()) + " tracks are taken for this vehicle itself");
-  announced_own_ = table_.own_tracks();
-  if (tracks.malformed != announced_malformed_)
-    event(now, "tracks_malformed", std::to_string(tracks.malformed) + " track messages could not be decoded");
-  announced_malformed_ = tracks.malformed;
-}
-
-FlightSummary Companion::summary() const {
-  FlightSummary summary = summary_;
-  summary.outcome = supervisor_.outcome();
-  summary.reason = supervisor_.reason();
-  summary.missing_peer = supervisor_.missing_peer();
-  return summary;
 }
 
 }  // namespace jink::bridge

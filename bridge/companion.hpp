@@ -94,6 +94,9 @@ class Companion {
   [[nodiscard]] FlightSummary summary() const;
 
  private:
+  static constexpr double kLostReference =
+      1.2;  // m from the reference, beyond which plans start at the vehicle instead
+
   void take_tracks(double now);
   void take_plan(double now);
   void start_plan(double now);

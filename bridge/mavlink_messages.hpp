@@ -69,8 +69,8 @@ struct Origin {
 };
 struct CommandAck {
   std::uint16_t command = 0;
-  int result = 0;                     ///< MAV_RESULT
-  std::uint32_t target_system = 0;    ///< extension fields: 0 from autopilots that do not send them
+  int result = 0;                   ///< MAV_RESULT
+  std::uint32_t target_system = 0;  ///< extension fields: 0 from autopilots that do not send them
   std::uint32_t target_component = 0;
 };
 struct AutopilotVersion {
@@ -94,9 +94,9 @@ struct StatusText {
 };
 
 /// AdsbReport: its time and sender are the caller's to fill in.
-using Message = std::variant<Heartbeat, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState, EstimatorStatus,
-                             BatteryStatus, Origin, CommandAck, AutopilotVersion, Timesync, ParamValue, StatusText,
-                             AdsbReport>;
+using Message =
+    std::variant<Heartbeat, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState, EstimatorStatus,
+                 BatteryStatus, Origin, CommandAck, AutopilotVersion, Timesync, ParamValue, StatusText, AdsbReport>;
 
 /// Decodes the message `name` (MAVLink's name) from `json`, an object with a member for each field. Nothing where the
 /// name is none of these, the text is no such object, or a field that matters is missing, not finite or beyond Limits.

@@ -2,40 +2,24 @@
 #include "bridge/supervisor.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
+
+#include "bridge/words.hpp"
 
 namespace jink::bridge {
 namespace {
 
-constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
-constexpr double kAskAgain = 1.5;          // s; a confirming heartbeat takes up to one
+constexpr double kAskAgain = 1.5;  // s; a confirming heartbeat takes up to one
 constexpr int kMostTries = 5;
-constexpr double kSettling = 0.3;         // s, within which a request acts; PX4 takes up to 15 ms
-constexpr double kReadyAgain = 10.0;      // s, to become ready again between the first request and arming
-constexpr double kClimbTimeout = 30.0;    // s
-constexpr double kLandingTimeout = 90.0;  // s
-constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
-constexpr double kLongestStop = 4.0;      // s
-constexpr double kUnsent = 0.2;           // s
-constexpr double kFailsafePasses =
-    1.5;  // s: PX4 is back in OFFBOARD 0.4 s after the stream, a heartbeat may be 1 s old
+constexpr double kSettling = 0.3;          // s, within which a request acts; PX4 takes up to 15 ms
+constexpr double kReadyAgain = 10.0;       // s, to become ready again between the first request and arming
+constexpr double kClimbTimeout = 30.0;     // s
+constexpr double kShortestStop = 0.3;      // s, of braking before a hand-over
+constexpr double kLongestStop = 4.0;       // s
+constexpr double kUnsent = 0.2;            // s
 constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each second without one
 
 using Motion = Decision::Motion;
-
-std::string metres(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f m", value);
-  return text.data();
-}
-
-/// Modes in which the autopilot knows where to fly to; in the others it waits for the sticks, and sinks without them.
-bool flies_by_itself(FlightMode mode) {
-  return mode == FlightMode::kHold || mode == FlightMode::kLand || mode == FlightMode::kReturn ||
-         mode == FlightMode::kTakeoff || mode == FlightMode::kMission;
-}
 
 }  // namespace
 
@@ -178,57 +162,6 @@ Decision Supervisor::update(double now, const VehicleState& state, const FlightP
   return {};
 }
 
-// True, and the flight is over, where somebody else changed the mode or the motors went off.
-bool Supervisor::taken_over(double now, const VehicleState& state) {
-  const bool asked = phase_ == Phase::kEngaging || phase_ == Phase::kStopping || phase_ == Phase::kHandover;
-  const bool ours = phase_ == Phase::kEngaging || phase_ == Phase::kClimbing || phase_ == Phase::kFlying ||
-                    phase_ == Phase::kStopping;
-  if (asked && state.mode == FlightMode::kOffboard) offboard_seen_ = true;
-  std::string what;
-  if (ours && flight_began_ >= 0.0 && !state.armed) {
-    what = "the autopilot disarmed in flight";
-  } else if ((ours && offboard_seen_ && state.mode != FlightMode::kOffboard) ||
-             (asked && !offboard_seen_ && state.mode != mode_before_)) {
-    if (state.failsafe && phase_ == Phase::kEngaging) {  // of a companion before us: our stream ends it
-      offboard_seen_ = false;
-      return false;
-    }
-    if (state.failsafe) return failsafe_took_over(now, state);
-    what = "the mode was changed to " + std::string(to_string(state.mode)) + " by pilot or autopilot";
-  } else {
-    failsafe_since_ = -1.0;
-    return false;
-  }
-  if (!reason_.empty()) reason_ += "; then " + what;
-  finish(pending_outcome_ == Outcome::kNone ? Outcome::kAborted : pending_outcome_, what);
-  return true;
-}
-
-// The autopilot's failsafe flies. True where it is left the vehicle for good.
-bool Supervisor::failsafe_took_over(double now, const VehicleState& state) {
-  if (failsafe_since_ < 0.0) failsafe_since_ = now;
-  if ((phase_ == Phase::kFlying || phase_ == Phase::kClimbing) && now - failsafe_since_ <= kFailsafePasses)
-    return false;
-  const std::string what = "the autopilot's failsafe took over, mode " + std::string(to_string(state.mode));
-  reason_ += (reason_.empty() ? "" : "; then ") + what;
-  if (pending_outcome_ == Outcome::kNone) pending_outcome_ = Outcome::kAborted;
-  hazard_.clear();
-  if (flies_by_itself(state.mode)) {
-    finish(pending_outcome_, {});
-    return true;
-  }
-  rescue_ = true;
-  enter(Phase::kHandover, now);
-  return false;
-}
-
-// Where the battery ends, the flight ends on the ground.
-void Supervisor::flee_battery(double now, const VehicleState& state) {
-  if (state.battery != BatteryState::kCritical) return;
-  if (phase_ == Phase::kClimbing || phase_ == Phase::kFlying) stop(now, Outcome::kAborted, "the battery is critical");
-  if (phase_ == Phase::kStopping) land_ = true;
-}
-
 // What a flight cannot begin without, into waiting_for_; empty: nothing.
 void Supervisor::find_missing(double now, const VehicleState& state, const FlightPicture& picture) {
   const bool autopilot = state.heartbeat_stamp >= 0.0 && now - state.heartbeat_stamp < kHeartbeatTimeout;
@@ -277,8 +210,8 @@ bool Supervisor::outside_fence(const VehicleState& state) {
     return p.x() < box.min.x() || p.x() > box.max.x() || p.y() < box.min.y() || p.y() > box.max.y();
   };
   if (!across(mission_.geofence, state.position)) return false;
-  finish(Outcome::kAborted, "the vehicle stands outside the geofence, at east " + metres(state.position.x()) +
-                                ", north " + metres(state.position.y()));
+  finish(Outcome::kAborted, "the vehicle stands outside the geofence, at east " + metres(state.position.x(), 1) +
+                                ", north " + metres(state.position.y(), 1));
   return true;
 }
 
@@ -386,93 +319,6 @@ Decision Supervisor::fly(double now, const VehicleState& state, const FlightPict
     return {Motion::kFollow, {}};
   }
   return fall_back(now);
-}
-
-// Out of a failsafe that only sinks. Without a position HOLD cannot be flown, and the failsafe is what is left.
-Decision Supervisor::rescue(double now, const VehicleState& state) {
-  if (state.mode == FlightMode::kOffboard) {  // it went back by itself: the stream was still on its way
-    rescue_ = false;
-    return {Motion::kBrake, ask(Command::kHold, now, state)};
-  }
-  if (!state.failsafe || flies_by_itself(state.mode) || (!state.armed && !state.in_air)) {
-    finish(pending_outcome_, {});
-  } else if (!state.local_position_ok) {
-    reason_ += "; without a position there is no HOLD, the failsafe has the vehicle";
-    finish(pending_outcome_, {});
-  } else if (exhausted(now, state)) {
-    reason_ +=
-        "; HOLD was not to be had" + (refusal_.empty() ? "" : " (" + refusal_ + ")") + ", the failsafe has the vehicle";
-    finish(pending_outcome_, {});
-  } else {
-    return {Motion::kNone, ask(Command::kHold, now, state)};
-  }
-  return {};
-}
-
-Decision Supervisor::hand_over(double now, const VehicleState& state) {
-  if (rescue_) return rescue(now, state);
-  const bool offboard = state.mode == FlightMode::kOffboard;
-  const bool landing = landing_interrupted_ && state.mode == FlightMode::kLand;
-  const bool grounded = !state.armed && !state.in_air;
-  const Motion motion = landing                                 ? Motion::kNone
-                        : pending_outcome_ == Outcome::kReached ? Motion::kFollow
-                                                                : Motion::kBrake;
-  // Stopped while OFFBOARD or arming was asked for: whether that acted, only a newer heartbeat tells.
-  if (state.heartbeat_stamp <= unsettled_until_ && (offboard ? grounded : !offboard_seen_)) {
-    if (now - entered_ <= kHeartbeatTimeout) return {motion, {}};
-    reason_ += "; the autopilot's heartbeat is missing, whether it is in OFFBOARD is not known";
-    finish(pending_outcome_, {});
-    return {};
-  }
-  if (state.failsafe && !offboard && !flies_by_itself(state.mode)) {
-    reason_ += "; then the autopilot's failsafe took over, mode " + std::string(to_string(state.mode));
-    pending_outcome_ = Outcome::kAborted;
-    rescue_ = true;
-    return rescue(now, state);
-  }
-  // HOLD is there; or somebody chose another mode, and that stands.
-  if ((!offboard && !landing) || grounded) {
-    finish(pending_outcome_, {});
-    return {};
-  }
-  if (exhausted(now, state)) {
-    finish(pending_outcome_ == Outcome::kReached ? Outcome::kAborted : pending_outcome_, {});
-    reason_ += "; HOLD was never confirmed, the autopilot's own failsafe has the vehicle";
-    return {};
-  }
-  // The stream goes on until HOLD is confirmed, so that the vehicle is never without an order.
-  return {motion, ask(Command::kHold, now, state)};
-}
-
-Decision Supervisor::land(double now, const VehicleState& state) {
-  if (!state.armed && !state.in_air) {
-    finish(pending_outcome_, {});
-    return {};
-  }
-  const auto fail = [&](const std::string& what) {
-    reason_ += ", but " + what;
-    pending_outcome_ = Outcome::kAborted;
-  };
-  if (state.mode != FlightMode::kOffboard && state.mode != FlightMode::kLand) {
-    fail("the landing was taken over: mode " + std::string(to_string(state.mode)));
-    finish(pending_outcome_, {});
-    return {};
-  }
-  if (state.mode == FlightMode::kLand) {
-    if (leave_landing_) {
-      finish(pending_outcome_, {});
-    } else if (now - entered_ > kLandingTimeout) {
-      fail("the landing did not end");
-      finish(pending_outcome_, {});
-    }
-    return {};
-  }
-  if (exhausted(now, state)) {
-    fail("the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_));
-    enter(Phase::kHandover, now);
-    return {Motion::kBrake, ask(Command::kHold, now, state)};
-  }
-  return {land_ ? Motion::kBrake : Motion::kFollow, ask(Command::kLand, now, state)};
 }
 
 }  // namespace jink::bridge

@@ -85,6 +85,8 @@ class Supervisor {
   [[nodiscard]] double flight_began() const { return flight_began_; }
 
  private:
+  static constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
+
   void enter(Phase phase, double now);
   void finish(Outcome outcome, std::string reason);
   std::optional<Command> ask(Command command, double now, const VehicleState& state);

@@ -1,115 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop with an autopilot, tracks and a planner that do as they are told: what goes on the wire, and what is said.
-#include "bridge/companion.hpp"
-
+// The loop when all goes well: what is planned, what goes on the wire.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "tests/support/bridge_fakes.hpp"
+#include "tests/bridge/companion_loop.hpp"
 
 namespace jink::bridge {
 namespace {
 
-using testing::FakeLink;
-using testing::FakePlanner;
-using testing::FakeTracks;
-using testing::Recorder;
-
-constexpr double kTurn = 0.02;  // s
-
-config::Mission mission() {
-  config::Mission m;
-  m.connection = "udpin://127.0.0.1:14540";
-  m.takeoff_height = 2.0;
-  m.min_height = 1.0;
-  m.waypoints = {{20, 0, 2}};
-  m.arrival = config::Arrival::kHold;
-  m.geofence = {{-5, -10, 0}, {30, 10, 12}};
-  return m;
-}
-
-/// The loop at 50 Hz around an autopilot that obeys and follows its setpoints exactly.
-struct Loop {
-  explicit Loop(const config::Mission& m = mission(), const config::Settings& settings = {})
-      : companion(m, settings, {link, source, planner, {&recorder}}) {
-    link.telemetry.mode = FlightMode::kHold;
-    link.telemetry.armable = link.telemetry.local_position_ok = true;
-  }
-
-  bool turn() {
-    VehicleState& state = link.telemetry;
-    if (heartbeats) state.heartbeat_stamp = now;
-    if (positions) state.position_stamp = now;
-    if (tracks) source.messages.push_back({1, now, 0.0, seen, 0});
-    const bool on = companion.step(now);
-    if (obeys) obey();
-    const bool flies = state.armed && state.mode == FlightMode::kOffboard && !link.sent.empty() && follows;
-    if (flies) {
-      state.position = link.sent.back().position;
-      state.velocity = link.sent.back().velocity;
-      state.in_air = state.in_air || state.position.z() > 0.2;
-    }
-    now += kTurn;
-    return on;
-  }
-  void obey() {
-    for (; obeyed < link.requests.size(); ++obeyed) {
-      const Command command = link.requests[obeyed];
-      if (command == Command::kOffboard) link.telemetry.mode = FlightMode::kOffboard;
-      if (command == Command::kArm) link.telemetry.armed = true;
-      if (command == Command::kHold) link.telemetry.mode = FlightMode::kHold;
-      if (command == Command::kLand) link.telemetry.mode = FlightMode::kLand;
-      if (command == Command::kHold || command == Command::kLand) link.telemetry.velocity.setZero();
-    }
-  }
-  void run(double seconds) {
-    for (const double end = now + seconds; now < end - 1e-9 && turn();) {
-    }
-  }
-  Loop& airborne(const Vec3& position = {0, 0, 2}) {
-    link.telemetry.in_air = link.telemetry.armed = true;
-    link.telemetry.position = position;
-    return *this;
-  }
-  /// Until plans are flown.
-  Loop& fly() {
-    while (recorder.plans == 0 && now < 20.0) turn();
-    run(0.5);
-    EXPECT_EQ(companion.supervisor().phase(), Phase::kFlying);
-    return *this;
-  }
-  [[nodiscard]] const Setpoint& last() const { return link.sent.back(); }
-
-  FakeLink link;
-  FakeTracks source;
-  FakePlanner planner;
-  Recorder recorder;
-  Companion companion;
-  std::vector<planner::Track> seen;
-  double now = 0.0;
-  bool heartbeats = true, positions = true, tracks = true, obeys = true, follows = true;
-  std::size_t obeyed = 0;
-};
-
-TEST(Percentiles, AreOrderStatistics) {
-  EXPECT_FALSE(percentiles({}));
-  const auto one = percentiles({7.0});
-  ASSERT_TRUE(one);
-  EXPECT_EQ(one->p50, 7.0);
-  EXPECT_EQ(one->p99, 7.0);
-  EXPECT_EQ(one->max, 7.0);
-  std::vector<double> values;
-  for (int i = 200; i >= 1; --i) values.push_back(i);
-  const auto many = percentiles(values);
-  EXPECT_EQ(many->p50, 100.0);
-  EXPECT_EQ(many->p99, 198.0);
-  EXPECT_EQ(many->max, 200.0);
-  EXPECT_EQ(percentiles({1.0, 2.0})->p50, 1.0);
-}
+using testing::Loop;
 
 TEST(Companion, FliesAMissionFromTheGroundToHold) {
   Loop loop;
@@ -147,7 +51,7 @@ TEST(Companion, StreamsNothingWhileItWaits) {
 }
 
 TEST(Companion, RaisesWaypointsToMinHeightAndSaysSo) {
-  config::Mission m = mission();
+  config::Mission m = Loop::mission();
   m.waypoints = {{5, 0, 0.2}, {20, 0, 3}};
   Loop loop(m);
   loop.airborne().fly();
@@ -177,7 +81,7 @@ TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
 }
 
 TEST(Companion, FliesByTheWaypointsOnTheWay) {
-  config::Mission m = mission();
+  config::Mission m = Loop::mission();
   m.waypoints = {{4, 0, 2}, {4, 4, 2}};
   Loop loop(m);
   loop.airborne().fly();
@@ -196,7 +100,7 @@ TEST(Companion, FliesByTheWaypointsOnTheWay) {
 TEST(Companion, AppliesAPlanFromItsStart) {
   config::Settings settings;
   settings.companion.setpoint_lead = 0.0;
-  Loop loop(mission(), settings);
+  Loop loop(Loop::mission(), settings);
   loop.planner.promised = 0.3;
   loop.planner.takes = 0.1;
   loop.airborne();
@@ -209,7 +113,7 @@ TEST(Companion, AppliesAPlanFromItsStart) {
   }
   loop.run(0.1);
   EXPECT_NEAR(loop.last().velocity.x(), 2.0, 1e-9);
-  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - kTurn - start), 1e-6);
+  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - Loop::kTurn - start), 1e-6);
   EXPECT_EQ(loop.companion.summary().deadline_misses, 0U);
 }
 
@@ -242,7 +146,7 @@ TEST(Companion, PlansAtTheStatedRateAndOneAtATime) {
   config::Settings settings;
   settings.companion.replan_rate_hz = 10.0;
   settings.companion.largest_replan_rate_hz = 20.0;
-  config::Mission m = mission();
+  config::Mission m = Loop::mission();
   m.tracks.required = false;
   Loop loop(m, settings);
   loop.airborne().fly();
@@ -261,112 +165,6 @@ TEST(Companion, PlansAtTheStatedRateAndOneAtATime) {
   EXPECT_LE(loop.planner.jobs.size() - slow, 11U);
 }
 
-TEST(Companion, BrakesOnTheWireWhenTheTracksGoStaleAndFliesOnWhenTheyCome) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.run(1.0);
-  loop.tracks = false;
-  loop.run(1.1);
-  EXPECT_EQ(loop.recorder.count("hazard"), 1);
-  const double speed = loop.last().velocity.norm();
-  loop.run(0.5);
-  EXPECT_NEAR(speed - loop.last().velocity.norm(), 1.0, 0.1);  // 2 m/s²
-  loop.run(1.0);
-  EXPECT_EQ(loop.last().velocity, Vec3::Zero());
-  loop.tracks = true;
-  loop.run(0.5);
-  EXPECT_EQ(loop.recorder.count("hazard_over"), 1);
-  EXPECT_NEAR(loop.last().velocity.norm(), 2.0, 1e-6);
-  EXPECT_EQ(loop.recorder.count("hazard"), 1);
-}
-
-TEST(Companion, BrakesWhenThePlannerIsLateOrHasNoPath) {
-  for (const bool silent : {true, false}) {
-    SCOPED_TRACE(silent);
-    Loop loop;
-    loop.airborne().fly();
-    (silent ? loop.planner.silent : loop.planner.valid) = silent;
-    loop.run(2.5);
-    EXPECT_EQ(loop.recorder.last("hazard"), "the planner is late");
-    EXPECT_EQ(loop.last().velocity, Vec3::Zero());
-    loop.run(3.0);
-    EXPECT_EQ(loop.companion.supervisor().outcome(), Outcome::kAborted);
-    EXPECT_EQ(loop.link.requests.back(), Command::kHold);
-  }
-}
-
-TEST(Companion, APlannerThatBreaksDownEndsInHold) {
-  for (const bool at_start : {false, true}) {
-    SCOPED_TRACE(at_start);
-    Loop loop;
-    loop.airborne().fly();
-    (at_start ? loop.planner.throws_at_start : loop.planner.throws) = true;
-    EXPECT_NO_THROW(loop.run(5.0));
-    EXPECT_EQ(loop.link.requests.back(), Command::kHold);
-    EXPECT_EQ(loop.companion.supervisor().outcome(), Outcome::kAborted);
-    EXPECT_EQ(loop.companion.supervisor().reason(), "the planner failed: no memory");
-    EXPECT_EQ(loop.recorder.count("planner_failed"), 1);
-  }
-}
-
-TEST(Companion, TheStreamStopsAtATakeoverAndStaysStopped) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.link.telemetry.mode = FlightMode::kPosition;
-  const std::size_t sent = loop.link.sent.size();
-  const std::size_t requests = loop.link.requests.size();
-  EXPECT_FALSE(loop.turn());
-  loop.link.telemetry.mode = FlightMode::kOffboard;
-  for (int i = 0; i < 100; ++i) EXPECT_FALSE(loop.turn());
-  EXPECT_EQ(loop.link.sent.size(), sent);
-  EXPECT_EQ(loop.link.requests.size(), requests);
-  EXPECT_EQ(loop.recorder.count("phase"), 3);  // engaging, flying, done
-}
-
-TEST(Companion, AnInterruptBrakesThenHolds) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.run(1.0);
-  loop.companion.interrupt(loop.now);
-  loop.run(0.5);
-  EXPECT_NEAR(loop.last().velocity.x(), 1.0, 0.1);
-  loop.run(3.0);
-  EXPECT_EQ(loop.link.requests.back(), Command::kHold);
-  EXPECT_TRUE(loop.companion.supervisor().done());
-  EXPECT_EQ(loop.companion.summary().reason, "interrupted");
-}
-
-// The take-off point lies above: to hold that would be to go on climbing.
-TEST(Companion, AnInterruptInTheClimbStopsTheClimb) {
-  Loop loop;
-  loop.follows = false;
-  loop.run(1.0);
-  ASSERT_EQ(loop.companion.supervisor().phase(), Phase::kClimbing);
-  loop.link.telemetry.position = {0, 0, 0.8};
-  loop.link.telemetry.velocity = {0, 0, 0.6};
-  loop.link.telemetry.in_air = true;
-  loop.turn();
-  EXPECT_EQ(loop.last().position.z(), 2.0);
-  loop.companion.interrupt(loop.now);
-  loop.run(0.4);
-  EXPECT_LT(loop.last().position.z(), 0.95);
-  EXPECT_GE(loop.last().position.z(), 0.8);
-}
-
-TEST(Companion, AClimbGoesOnAfterAHazard) {
-  Loop loop;
-  loop.follows = false;
-  loop.run(1.0);
-  loop.link.telemetry.position = {0, 0, 0.8};
-  loop.link.telemetry.in_air = true;
-  loop.tracks = false;
-  loop.run(1.5);
-  EXPECT_NEAR(loop.last().position.z(), 0.8, 1e-9);
-  loop.tracks = true;
-  loop.run(0.1);
-  EXPECT_EQ(loop.last().position, Vec3(0, 0, 2));
-}
-
 TEST(Companion, EngagingInTheAirDoesNotCallTheVehicleBack) {
   Loop loop;
   loop.airborne();
@@ -375,11 +173,11 @@ TEST(Companion, EngagingInTheAirDoesNotCallTheVehicleBack) {
     loop.link.telemetry.position.x() = 4.0 * loop.now;  // a pilot flies it
     loop.turn();
   }
-  EXPECT_NEAR(loop.last().position.x(), 4.0 * (loop.now - kTurn), 1e-9);
+  EXPECT_NEAR(loop.last().position.x(), 4.0 * (loop.now - Loop::kTurn), 1e-9);
 }
 
 TEST(Companion, TurnsTheHeadingToTheWaypointAtABoundedRate) {
-  config::Mission m = mission();
+  config::Mission m = Loop::mission();
   m.waypoints = {{0, 8, 2}};
   Loop loop(m);
   loop.link.telemetry.yaw = -2.5;
@@ -391,7 +189,7 @@ TEST(Companion, TurnsTheHeadingToTheWaypointAtABoundedRate) {
     fastest = std::max(fastest, std::abs(change));
   }
   EXPECT_EQ(loop.link.sent.front().yaw, -2.5);
-  EXPECT_NEAR(fastest, 1.5 * kTurn, 1e-9);
+  EXPECT_NEAR(fastest, 1.5 * Loop::kTurn, 1e-9);
   EXPECT_NEAR(loop.last().yaw, std::numbers::pi / 2.0, 1e-6);
 }
 
@@ -417,21 +215,6 @@ TEST(Companion, PlansFromTheVehicleWhereTrackingIsLostAndSaysItOnce) {
   EXPECT_EQ(loop.recorder.count("reference_lost"), 1);
 }
 
-TEST(Companion, BrakesAtTheVehicleWhereTrackingIsLost) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.follows = false;
-  loop.planner.silent = true;
-  loop.run(2.0);  // the reference has gone ahead meanwhile, and brakes there
-  Loop lost;
-  lost.airborne().fly();
-  lost.follows = false;
-  lost.link.telemetry.position += Vec3(0, 2.5, 0);
-  lost.companion.interrupt(lost.now);
-  lost.run(0.2);
-  EXPECT_NEAR(lost.last().position.y(), 2.5, 0.1);
-}
-
 // The loop is woken by a track and by the plan that it leads to, between two turns.
 TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   Loop loop;
@@ -441,7 +224,7 @@ TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   loop.run(0.04);
   const std::size_t jobs = loop.planner.jobs.size();
   const std::size_t sent = loop.link.sent.size();
-  const double woken = loop.now - kTurn + 0.006;
+  const double woken = loop.now - Loop::kTurn + 0.006;
   loop.source.messages.push_back({1, woken, 0.0, {}, 0});
   loop.companion.step(woken);
   ASSERT_EQ(loop.planner.jobs.size(), jobs + 1);
@@ -449,45 +232,6 @@ TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   loop.companion.step(woken + 0.005);
   EXPECT_EQ(loop.link.sent.size(), sent + 1);
   EXPECT_NEAR(loop.companion.summary().track_to_setpoint_ms.back(), 5.0, 1e-6);
-}
-
-TEST(Companion, AJumpOfTheEstimateShiftsThePlan) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.run(1.0);
-  const Setpoint before = loop.last();
-  const Vec3 jump(-3, 1, 0.5);
-  loop.link.telemetry.position += jump;
-  loop.link.telemetry.estimate_shift += jump;
-  ++loop.link.telemetry.estimate_resets;
-  loop.turn();
-  EXPECT_LT((loop.last().position - before.position - jump).norm(), 0.1);
-  EXPECT_LT((loop.last().velocity - before.velocity).norm(), 0.1);
-  EXPECT_EQ(loop.recorder.count("estimate_reset"), 1);
-  EXPECT_NE(loop.recorder.last("estimate_reset").find("3.20 m"), std::string::npos);
-  loop.run(0.3);  // and so is the plan that was in the making
-  for (std::size_t i = loop.link.sent.size() - 15; i + 1 < loop.link.sent.size(); ++i)
-    EXPECT_LT((loop.link.sent[i + 1].position - loop.link.sent[i].position).norm(), 0.2);
-  EXPECT_EQ(loop.recorder.count("reference_lost"), 0);
-  EXPECT_EQ(loop.companion.summary().estimate_resets, 1U);
-}
-
-TEST(Companion, TheMarginGrowsWithTheTrackingErrorAndComesBack) {
-  Loop loop;
-  loop.airborne().fly();
-  EXPECT_EQ(loop.planner.jobs.back().request.margin, config::Settings{}.horizon.margin);
-  loop.follows = false;
-  loop.link.telemetry.position = loop.last().position + Vec3(0, 0.6, 0);
-  loop.link.telemetry.velocity = loop.last().velocity;
-  loop.turn();
-  loop.follows = true;
-  loop.run(0.2);
-  EXPECT_NEAR(loop.planner.jobs.back().request.margin, 0.6, 0.05);
-  EXPECT_EQ(loop.recorder.count("margin"), 1);
-  EXPECT_NEAR(loop.companion.summary().largest_margin, 0.6, 0.05);
-  loop.run(5.0);
-  EXPECT_EQ(loop.planner.jobs.back().request.margin, config::Settings{}.horizon.margin);
-  EXPECT_EQ(loop.recorder.last("margin"), "back to 0.35 m");
 }
 
 TEST(Companion, DoesNotFleeFromItsOwnTrack) {
@@ -506,103 +250,8 @@ TEST(Companion, DoesNotFleeFromItsOwnTrack) {
   EXPECT_EQ(loop.recorder.last("tracks_self"), "1 tracks are taken for this vehicle itself");
 }
 
-TEST(Companion, AfterAShortStallItGoesOnAfterALongOneItHolds) {
-  for (const double stall : {0.5, 1.5}) {
-    SCOPED_TRACE(stall);
-    Loop loop;
-    loop.airborne().fly();
-    loop.now += stall;
-    loop.run(3.0);
-    EXPECT_EQ(loop.recorder.count("stalled"), 1);
-    const FlightSummary summary = loop.companion.summary();
-    ASSERT_FALSE(summary.hazards.empty());
-    EXPECT_NEAR(summary.hazards[0].duration, stall, 0.05);
-    if (stall < 1.0) {
-      EXPECT_EQ(loop.companion.supervisor().phase(), Phase::kFlying);
-    } else {
-      EXPECT_EQ(loop.link.requests.back(), Command::kHold);
-      EXPECT_EQ(summary.reason, "this program did not run for 1.5 s");
-    }
-  }
-}
-
-TEST(Companion, TheSummaryHoldsEachHazardAndHowLongItLasted) {
-  Loop loop;
-  loop.airborne().fly();
-  for (int i = 0; i < 2; ++i) {
-    loop.tracks = false;
-    loop.run(1.5);
-    loop.tracks = true;
-    loop.run(1.0);
-  }
-  const auto hazards = loop.companion.summary().hazards;
-  ASSERT_EQ(hazards.size(), 2U);
-  for (const HazardRecord& hazard : hazards) {
-    EXPECT_EQ(hazard.what, "the obstacle tracks are stale");
-    EXPECT_NEAR(hazard.duration, 0.5, 0.05);
-  }
-}
-
-TEST(Companion, SaysNothingTwice) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.link.works = false;
-  loop.run(1.0);
-  EXPECT_EQ(loop.recorder.count("send_failed"), 1);
-  loop.link.works = true;
-  loop.run(1.0);
-  EXPECT_EQ(loop.recorder.count("send_works"), 1);
-  EXPECT_EQ(loop.recorder.count("plan_status"), 1);
-  EXPECT_EQ(loop.recorder.count("request"), 1);
-  EXPECT_EQ(loop.recorder.count("phase"), 2);
-}
-
-TEST(Companion, ReportsRefusedTracksOnceASecond) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.source.told.last_refusal = "radius is not positive";
-  const double begun = loop.now;
-  while (loop.now < begun + 5.0) {
-    ++loop.source.told.dropped_tracks;
-    loop.turn();
-  }
-  EXPECT_GE(loop.recorder.count("tracks_refused"), 4);
-  EXPECT_LE(loop.recorder.count("tracks_refused"), 6);
-  EXPECT_EQ(loop.recorder.last("tracks_refused"), "radius is not positive");
-  EXPECT_EQ(loop.companion.summary().dropped_tracks, loop.source.told.dropped_tracks);
-  const int before = loop.recorder.count("tracks_refused");
-  loop.run(1.05);  // what is left to say
-  const int settled = loop.recorder.count("tracks_refused");
-  EXPECT_LE(settled, before + 1);
-  loop.run(3.0);
-  EXPECT_EQ(loop.recorder.count("tracks_refused"), settled);
-}
-
-TEST(Companion, SaysThatAWritersClockIsOff) {
-  Loop loop;
-  loop.tracks = false;
-  loop.airborne();
-  for (int i = 0; i < 100; ++i) {
-    loop.source.messages.push_back({1, loop.now, -3600.0, {}, 0});
-    loop.turn();
-  }
-  EXPECT_EQ(loop.recorder.count("tracks_clock"), 1);
-}
-
-TEST(Companion, TellsTheAutopilotsAnswers) {
-  Loop loop;
-  loop.obeys = false;
-  loop.run(0.1);
-  loop.link.reports.push_back({Command::kOffboard, false, "temporarily rejected"});
-  loop.turn();
-  EXPECT_EQ(loop.recorder.last("refused"), "offboard: temporarily rejected");
-  loop.link.reports.push_back({Command::kOffboard, true, ""});
-  loop.turn();
-  EXPECT_EQ(loop.recorder.last("accepted"), "offboard");
-}
-
 TEST(Companion, LandsWhereTheMissionSaysSo) {
-  config::Mission m = mission();
+  config::Mission m = Loop::mission();
   m.arrival = config::Arrival::kLand;
   m.waypoints = {{3, 0, 2}};
   Loop loop(m);

@@ -35,8 +35,8 @@ TEST(MavlinkMessages, ComeInTheProjectsFramesAndUnits) {
   EXPECT_EQ(position.velocity, Vec3(5, 4, 6));
   const auto attitude = decoded<mavlink::Attitude>("ATTITUDE", R"({"time_boot_ms":1,"yaw":0.0})");
   EXPECT_DOUBLE_EQ(attitude.yaw, std::numbers::pi / 2);  // north
-  const auto origin = decoded<mavlink::Origin>(
-      "GPS_GLOBAL_ORIGIN", R"({"latitude":473977418,"longitude":85455939,"altitude":488000})");
+  const auto origin =
+      decoded<mavlink::Origin>("GPS_GLOBAL_ORIGIN", R"({"latitude":473977418,"longitude":85455939,"altitude":488000})");
   EXPECT_EQ(origin.place, (Geodetic{47.3977418, 8.5455939, 488.0}));
   const auto aircraft = decoded<AdsbReport>(
       "ADSB_VEHICLE",
