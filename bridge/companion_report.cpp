@@ -11,7 +11,7 @@
 namespace jink::bridge {
 namespace {
 
-constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
+constexpr double kForgetting = 5.0;   // s, in which a tracking error fades to a third
 constexpr double kMarginStep = 0.05;  // m, of a grown margin that is worth saying
 
 }  // namespace

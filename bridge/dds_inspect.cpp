@@ -19,6 +19,7 @@
 #include "bridge/dds_px4.hpp"
 #include "bridge/dds_px4_messages.hpp"
 #include "bridge/dds_support.hpp"
+#include "bridge/dds_track_messages.hpp"
 #include "bridge/dds_tracks.hpp"
 #include "config/text.hpp"
 

@@ -88,27 +88,28 @@ void conclude(const PathRequest& request, double horizon, Plan& plan) {
 
 }  // namespace
 
+std::vector<double> start_solutions(const PathProblem& problem, const PathRequest& request, const TimedPath& previous,
+                                    const HorizonSettings& settings) {
+  const auto d = static_cast<std::size_t>(problem.dimension());
+  std::vector<double> initial(d, 0.0);
+  const TimedPath undisturbed = problem.motion(initial);
+  const auto add = [&](const TimedPath& path) {
+    initial.resize(initial.size() + d);
+    problem.imitate(path, {initial.data() + initial.size() - d, d});
+  };
+  if (!previous.empty()) add(previous);
+  if (!settings.seeding) return initial;
+  std::vector<double> times;
+  for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
+  for (const TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) add(path);
+  return initial;
+}
+
 HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer)
     : settings_(settings),
       problem_(settings),
       emergency_(for_emergencies(settings)),
       optimizer_(sized(optimizer, settings), problem_.dimension(), problem_.objectives()) {}
-
-// Straight on, the plan before, and what a pilot would try first.
-void HorizonPlanner::start_from(const PathProblem& problem, const PathRequest& request, const TimedPath& previous) {
-  const auto d = static_cast<std::size_t>(problem.dimension());
-  initial_.assign(d, 0.0);
-  const TimedPath undisturbed = problem.motion(initial_);
-  const auto add = [&](const TimedPath& path) {
-    initial_.resize(initial_.size() + d);
-    problem.imitate(path, {initial_.data() + initial_.size() - d, d});
-  };
-  if (!previous.empty()) add(previous);
-  if (!settings_.seeding) return;
-  std::vector<double> times;
-  for (int k = 1; k <= settings_.waypoints; ++k) times.push_back(k * problem.horizon() / settings_.waypoints);
-  for (const TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) add(path);
-}
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                           std::uint64_t number, const Budget& budget, WorkerPool& pool) {
@@ -147,7 +148,7 @@ Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous,
 Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const TimedPath& previous,
                             const Random& random, const Budget& budget, WorkerPool& pool) {
   problem.prepare(request);
-  start_from(problem, request, previous);
+  initial_ = start_solutions(problem, request, previous, settings_);
   Budget affordable = budget;
   affordable.generations = affordable_generations(budget);
   const auto begun = std::chrono::steady_clock::now();

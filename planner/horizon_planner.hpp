@@ -15,6 +15,11 @@
 
 namespace jink::planner {
 
+/// Where the search for a plan starts: solutions of `problem`, which is prepared for `request`, one after another.
+/// Straight on; `previous`, where there is one; and, with settings.seeding, what a pilot would try first. Allocates.
+[[nodiscard]] std::vector<double> start_solutions(const PathProblem& problem, const PathRequest& request,
+                                                  const TimedPath& previous, const HorizonSettings& settings);
+
 /// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits
 /// for the same request, previous plan, seed and generations, whatever the number of threads. Where a deadline is
 /// given, the plan says how far its searches went, and repeat() makes it again from that.
@@ -55,7 +60,6 @@ class HorizonPlanner {
             const std::array<Budget, 2>& budgets, WorkerPool& pool);
   Plan search(PathProblem& problem, const PathRequest& request, const TimedPath& previous, const Random& random,
               const Budget& budget, WorkerPool& pool);
-  void start_from(const PathProblem& problem, const PathRequest& request, const TimedPath& previous);
   [[nodiscard]] int affordable_generations(const Budget& budget) const;
   [[nodiscard]] Plan choose(const PathProblem& problem, const PathRequest& request, const Front& front) const;
   [[nodiscard]] std::vector<Cost> banded(std::span<const Cost> costs) const;

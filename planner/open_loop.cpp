@@ -30,16 +30,6 @@ Verification verify_whole(const TimedPath& path, const OpenLoopRequest& request)
                  request.path.acceleration_trust, kInfinity, request.path.paths});
 }
 
-bool start_blocked(const PathRequest& request) {
-  const auto inside = [&](const Vec3& position, double radius) {
-    return (position - request.position).norm() < radius + request.vehicle.radius;
-  };
-  return std::any_of(request.tracks.begin(), request.tracks.end(),
-                     [&](const Track& track) { return inside(track.position, track.radius); }) ||
-         std::any_of(request.paths.begin(), request.paths.end(),
-                     [&](const KnownPath& path) { return inside(path.position(0.0), path.radius); });
-}
-
 /// Adds the first `keep` seconds of a part, which starts at time `t`, to the whole.
 void append(const TimedPath& part, double t, double keep, TimedPath& whole) {
   for (const TimedPoint& point : part) {
@@ -104,7 +94,7 @@ Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint6
 
 Plan plan_open_loop(const HorizonSettings& settings, const OptimizerSettings& optimizer, const OpenLoopRequest& request,
                     std::uint64_t seed, const Budget& budget, WorkerPool& pool) {
-  if (start_blocked(request.path)) {
+  if (start_blocked(request.path.position, request.path.vehicle.radius, request.path.tracks, request.path.paths)) {
     Plan plan;
     plan.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
     plan.verification = verify_whole(plan.path, request);

@@ -71,12 +71,6 @@ bool valid(const PaperRequest& request) {
          std::all_of(request.tracks.begin(), request.tracks.end(), finite);
 }
 
-bool start_blocked(const PaperRequest& request) {
-  return std::any_of(request.tracks.begin(), request.tracks.end(), [&](const Track& track) {
-    return (track.position - request.start).norm() < track.radius + request.vehicle.radius;
-  });
-}
-
 /// Plans the free waypoints into `plan.path`, which holds the start.
 void plan_steps(const PaperRequest& request, Optimizer& optimizer, WorkerPool& pool, Plan& plan) {
   const Laterals directions = laterals(request, effective_axis(request));
@@ -136,7 +130,7 @@ Plan plan_paper(const PaperRequest& request, Optimizer& optimizer, WorkerPool& p
   Plan plan;
   if (!valid(request)) return plan;
   plan.path.push_back({0.0, request.start, Vec3::Zero(), Vec3::Zero()});
-  if (start_blocked(request)) {
+  if (start_blocked(request.start, request.vehicle.radius, request.tracks)) {
     plan.status = PlanStatus::kStartBlocked;
   } else {
     plan_steps(request, optimizer, pool, plan);

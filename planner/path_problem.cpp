@@ -52,7 +52,7 @@ PathProblem::PathProblem(const HorizonSettings& settings)
 
 void PathProblem::prepare(const PathRequest& request) {
   request_ = request;
-  const double acceleration = settings_.acceleration_share * request.vehicle.max_acceleration;
+  const double acceleration = most_acceleration();
   scene_.position = request.position;
   scene_.velocity = request.velocity;
   scene_.target = request.target;
@@ -72,7 +72,7 @@ void PathProblem::undisturbed_flight() {
   const double climb_share = std::abs(frame.axis.z());
   const double cruise =
       climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
-  const double change = settings_.acceleration_share * vehicle.max_acceleration * settings_.step;
+  const double change = most_acceleration() * settings_.step;
   double distance = 0.0;
   double speed = std::clamp(request_.velocity.dot(frame.axis), 0.0, vehicle.max_speed);
   double time = 0.0;
@@ -112,7 +112,7 @@ void PathProblem::predict_obstacles() {
   const VehicleLimits& vehicle = request_.vehicle;
   const double speed = std::max(vehicle.max_speed, request_.velocity.norm());
   const double climb = std::max(vehicle.max_climb, std::abs(request_.velocity.z()));
-  const double acceleration = settings_.acceleration_share * vehicle.max_acceleration;
+  const double acceleration = most_acceleration();
   Box before = ball(request_.position, 0.0);
   for (int step = 0; step < scene_.steps; ++step) {
     const double t = (step + 1) * settings_.step;
@@ -256,16 +256,6 @@ void PathProblem::imitate(const TimedPath& path, std::span<double> x) const {
     x[3 * i] = std::clamp(along / (along > 0.0 ? scene_.reach[i].ahead : scene_.reach[i].behind), -1.0, 1.0);
     x[3 * i + 1] = std::clamp(q.y() / scene_.reach[i].aside, -1.0, 1.0);
     x[3 * i + 2] = std::clamp(q.z() / scene_.reach[i].aside, -1.0, 1.0);
-  }
-}
-
-void PathProblem::manoeuvre(double share, double left, double up, std::span<double> x) const {
-  for (int k = 0; k < settings_.waypoints; ++k) {
-    const std::size_t i = index(k);
-    const double kept = 3 * k < 2 * settings_.waypoints ? 1.0 : 0.0;
-    x[3 * i] = kept * share;
-    x[3 * i + 1] = kept * std::clamp(left / scene_.reach[i].aside, -1.0, 1.0);
-    x[3 * i + 2] = kept * std::clamp(up / scene_.reach[i].aside, -1.0, 1.0);
   }
 }
 

@@ -66,9 +66,6 @@ class PathProblem final : public Problem {
 
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
   void imitate(const TimedPath& path, std::span<double> x) const;
-  /// Variables of a manoeuvre: `share` in [-1, 1] of the way ahead (or back), and metres left and up of the straight
-  /// line, kept for two thirds of the horizon.
-  void manoeuvre(double share, double left, double up, std::span<double> x) const;
 
   [[nodiscard]] int steps() const { return scene_.steps; }
   [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
@@ -78,6 +75,9 @@ class PathProblem final : public Problem {
  private:
   static constexpr int kMaxSteps = 256;
 
+  [[nodiscard]] double most_acceleration() const {
+    return settings_.acceleration_share * request_.vehicle.max_acceleration;
+  }
   void undisturbed_flight();
   void predict_obstacles();
   [[nodiscard]] Clearance clearance() const;

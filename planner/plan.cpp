@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planner/plan.hpp"
 
+#include <algorithm>
+
 namespace jink::planner {
 
 std::string_view to_string(PlanStatus status) {
@@ -17,6 +19,15 @@ std::string_view to_string(PlanStatus status) {
       return "invalid";
   }
   return "invalid";
+}
+
+bool start_blocked(const Vec3& start, double vehicle_radius, std::span<const Track> tracks,
+                   std::span<const KnownPath> paths) {
+  const auto inside = [&](const Vec3& position, double radius) {
+    return (position - start).norm() < radius + vehicle_radius;
+  };
+  return std::any_of(tracks.begin(), tracks.end(), [&](const Track& t) { return inside(t.position, t.radius); }) ||
+         std::any_of(paths.begin(), paths.end(), [&](const KnownPath& p) { return inside(p.position(0.0), p.radius); });
 }
 
 }  // namespace jink::planner

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "planner/known_path.hpp"
 #include "planner/trajectory.hpp"
+#include "planner/types.hpp"
 #include "planner/verifier.hpp"
 
 namespace jink::planner {
@@ -20,6 +23,10 @@ enum class PlanStatus {
   kInvalid        ///< the request holds a number that is not finite; there is no path
 };
 std::string_view to_string(PlanStatus status);
+
+/// Whether a vehicle of this radius stands inside an obstacle at time 0.
+[[nodiscard]] bool start_blocked(const Vec3& start, double vehicle_radius, std::span<const Track> tracks,
+                                 std::span<const KnownPath> paths = {});
 
 /// How far a search went: the generations that were scheduled, and of these the ones done. 0, 0: it was not made.
 struct SearchExtent {

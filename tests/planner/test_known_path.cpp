@@ -75,6 +75,20 @@ Track random_track(RandomStream& random, std::uint64_t id) {
   return track;
 }
 
+/// The same obstacles both ways.
+struct Twins {
+  std::vector<Track> tracks;
+  std::vector<KnownPath> known;
+};
+Twins twins(RandomStream& random, std::uint64_t count) {
+  Twins twins;
+  for (std::uint64_t id = 0; id < count; ++id) {
+    twins.tracks.push_back(random_track(random, id));
+    twins.known.push_back(straight(twins.tracks.back()));
+  }
+  return twins;
+}
+
 PathRequest request() {
   PathRequest r;
   r.position = {0, 0, 2};
@@ -174,12 +188,7 @@ TEST(VerifierOfKnownPaths, SeesAStraightOneAsTheEquivalentTrack) {
   int contacts = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     RandomStream random(seed);
-    std::vector<Track> tracks;
-    std::vector<KnownPath> known;
-    for (std::uint64_t id = 0; id < 5; ++id) {
-      tracks.push_back(random_track(random, id));
-      known.push_back(straight(tracks.back()));
-    }
+    const auto [tracks, known] = twins(random, 5);
     TimedPath path{{0.0, {0, 0, 2}, kZero, kZero}};
     for (int i = 1; i < 40; ++i) {
       path.push_back({0.2 * i, path.back().position + Vec3(0.5, 0, 0) + random_vector(random, 0.2), kZero, kZero});
@@ -303,12 +312,7 @@ TEST(PathProblemOfKnownPaths, CostsAStraightOneAsTheEquivalentTrack) {
   int costly = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     RandomStream random(seed);
-    std::vector<Track> tracks;
-    std::vector<KnownPath> known;
-    for (std::uint64_t id = 0; id < 6; ++id) {
-      tracks.push_back(random_track(random, id));
-      known.push_back(straight(tracks.back()));
-    }
+    const auto [tracks, known] = twins(random, 6);
     PathRequest r = request();
     PathProblem of_tracks{HorizonSettings{}};
     PathProblem of_paths{HorizonSettings{}};
@@ -337,8 +341,7 @@ TEST(PathProblemOfKnownPaths, CostsAStraightOneAsTheEquivalentTrack) {
 
 TEST(PathProblemOfKnownPaths, PreparesWithoutTheHeap) {
   RandomStream random(1);
-  std::vector<KnownPath> known;
-  for (std::uint64_t id = 0; id < 6; ++id) known.push_back(straight(random_track(random, id)));
+  const auto known = twins(random, 6).known;
   PathRequest r = request();
   r.paths = known;
   PathProblem problem{HorizonSettings{}};
@@ -386,6 +389,13 @@ KnownPath weaving() {
   return path;
 }
 
+/// By dense sampling.
+void expect_apart(const TimedPath& plan, const KnownPath& path, double until) {
+  for (double t = 0.0; t < until; t += 0.01) {
+    ASSERT_GT((sample(plan, t).position - path.position(t)).norm(), 0.8) << t;
+  }
+}
+
 TEST(HorizonPlannerAmongKnownPaths, KeepsClearOfOneThatTurns) {
   const KnownPath path = weaving();
   PathRequest r = request();
@@ -400,10 +410,7 @@ TEST(HorizonPlannerAmongKnownPaths, KeepsClearOfOneThatTurns) {
   EXPECT_NE(plan.status, PlanStatus::kBlocked);
   EXPECT_GE(plan.verification.min_clearance, r.margin - 0.05);
   EXPECT_EQ(plan.verification.nearest_id, 9U);
-  // Dense sampling agrees.
-  for (double t = 0.0; t < 6.0; t += 0.01) {
-    ASSERT_GT((sample(plan.path, t).position - path.position(t)).norm(), 0.8) << t;
-  }
+  expect_apart(plan.path, path, 6.0);
   // The plan that was good without it is not kept.
   const Plan next = planner.plan(r, straight_on.path, 1, 1, budget, pool);
   EXPECT_FALSE(next.kept_previous);
@@ -420,9 +427,7 @@ TEST(OpenLoopAmongKnownPaths, ArrivesClearOfThem) {
   WorkerPool pool(2);
   const Plan plan = plan_open_loop({}, {}, r, 1, {60, Budget::Time::max()}, pool);
   EXPECT_EQ(plan.status, PlanStatus::kReaches);
-  for (double t = 0.0; t < plan.path.back().t; t += 0.01) {
-    ASSERT_GT((sample(plan.path, t).position - path.position(t)).norm(), 0.8) << t;
-  }
+  expect_apart(plan.path, path, plan.path.back().t);
   KnownPath here = path;
   here.points = {{0.0, r.path.position, kZero, kZero}};
   r.path.paths = {&here, 1};

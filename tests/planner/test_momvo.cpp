@@ -11,6 +11,7 @@
 #include "planner/indicators.hpp"
 #include "planner/path_problem.hpp"
 #include "planner/waypoint_problem.hpp"
+#include "tests/planner/fronts.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace jink::planner {
@@ -46,12 +47,6 @@ class Zdt1 final : public Problem {
   double origin_;
 };
 
-double volume_of(const Archive& archive) {
-  std::vector<Point2> points;
-  for (const Cost& c : archive.costs()) points.push_back({c.f[0], c.f[1]});
-  return hypervolume(points, {1.1, 1.1});
-}
-
 void run(Momvo& momvo, const Problem& problem, int iterations, std::uint64_t seed) {
   momvo.reset(problem, RandomStream(seed));
   for (int i = 0; i < iterations; ++i) momvo.iterate(static_cast<double>(i + 1) / iterations);
@@ -63,8 +58,8 @@ TEST(Momvo, ConvergesOnZdt1) {
     const Zdt1 problem(5);
     Momvo momvo(50, 5, 2, {});
     run(momvo, problem, 100, seed);
-    EXPECT_GT(volume_of(momvo.archive()), 0.84) << seed;
-    EXPECT_LT(volume_of(momvo.archive()), 0.8767);
+    EXPECT_GT(testing::volume_of(momvo.archive().costs()), 0.84) << seed;
+    EXPECT_LT(testing::volume_of(momvo.archive().costs()), 0.8767);
     EXPECT_FALSE(problem.outside);
   }
 }
@@ -78,7 +73,7 @@ TEST(Momvo, FindsTheSameWhereverTheOriginIs) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     run(a, here, 60, seed);
     run(b, there, 60, seed);
-    EXPECT_NEAR(volume_of(a.archive()), volume_of(b.archive()), 0.05);
+    EXPECT_NEAR(testing::volume_of(a.archive().costs()), testing::volume_of(b.archive().costs()), 0.05);
   }
 }
 

@@ -536,12 +536,13 @@ TEST(PathProblem, ImitationIsTheOffsetOverTheReach) {
   for (const double value : x) EXPECT_LE(std::abs(value), 1.0);
 }
 
-TEST(PathProblem, ManoeuvreGoesAsideAndReturns) {
+// 3 m to the left for two thirds of the horizon. The waypoints reach 5 m and then 6 m aside.
+TEST(PathProblem, GoesAsideAndReturns) {
   PathProblem problem{HorizonSettings{}};
   PathRequest r = request();
   problem.prepare(r);
   std::vector<double> x = zeros(problem);
-  problem.manoeuvre(0.0, 3.0, 0.0, x);
+  for (std::size_t k = 0; k < 4; ++k) x[3 * k + 1] = 3.0 / (k == 0 ? 5.0 : 6.0);
   double leftmost = 0.0;
   for (const TimedPoint& point : problem.motion(x)) leftmost = std::max(leftmost, point.position.y());
   EXPECT_GT(leftmost, 2.9);

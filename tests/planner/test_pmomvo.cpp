@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "planner/indicators.hpp"
+#include "tests/planner/fronts.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace jink::planner {
@@ -73,12 +73,6 @@ void expect_front(const Front& front) {
   }
 }
 
-double volume_of(const Front& front) {
-  std::vector<Point2> points;
-  for (const Cost& c : front.costs) points.push_back({c.f[0], c.f[1]});
-  return hypervolume(points, {1.1, 1.1});
-}
-
 // The true front has 0.8767; the least over 60 seeds is 0.856 (6 slaves).
 TEST(Pmomvo, ConvergesOnZdt1) {
   const Zdt1 problem;
@@ -88,8 +82,8 @@ TEST(Pmomvo, ConvergesOnZdt1) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Front& front = optimizer.run(problem, {}, seed, 0, {}, pool);
       expect_front(front);
-      EXPECT_GT(volume_of(front), 0.84) << slaves << " slaves, seed " << seed;
-      EXPECT_LT(volume_of(front), 0.8767);
+      EXPECT_GT(testing::volume_of(front.costs), 0.84) << slaves << " slaves, seed " << seed;
+      EXPECT_LT(testing::volume_of(front.costs), 0.8767);
     }
   }
 }

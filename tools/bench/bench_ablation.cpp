@@ -15,11 +15,11 @@
 
 #include "planner/horizon_planner.hpp"
 #include "planner/indicators.hpp"
-#include "planner/manoeuvres.hpp"
 #include "planner/path_problem.hpp"
 #include "planner/pmomvo.hpp"
 #include "sim/world.hpp"
 #include "sim/world_families.hpp"
+#include "tools/bench/fronts.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/missions.hpp"
 
@@ -28,12 +28,10 @@ namespace {
 
 constexpr int kWorlds = 10;                     // of each family
 constexpr double kPoints[] = {0.0, 0.25, 0.5};  // of the straight line, from which plans start
-constexpr double kSeedClearance = 0.2;          // m, as in planner/horizon_planner.cpp
 constexpr int kReferenceFactor = 10;            // generations of the reference over the default's
 constexpr double kSteeringShare = 0.01;         // of f2 and f3 in the score
 constexpr double kClearanceShare = 0.3;
-constexpr double kSame = 1e-9;                // scores nearer than this count as equal
-constexpr planner::Point2 kCorner{1.1, 1.1};  // reference of hypervolumes, of normalised fronts
+constexpr double kSame = 1e-9;  // scores nearer than this count as equal
 constexpr std::uint64_t kSeed = 1;
 
 /// A way to search, for horizon plans.
@@ -143,22 +141,6 @@ std::vector<Variant> horizon_variants(const planner::HorizonSettings& settings) 
   return variants;
 }
 
-/// Where HorizonPlanner's search starts, without a plan before.
-std::vector<double> initial_solutions(const planner::PathProblem& problem, const planner::PathRequest& request,
-                                      const planner::HorizonSettings& settings, bool seeding) {
-  const auto d = static_cast<std::size_t>(problem.dimension());
-  std::vector<double> initial(d, 0.0);
-  if (!seeding) return initial;
-  std::vector<double> times;
-  for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
-  const planner::TimedPath undisturbed = problem.motion(initial);
-  for (const planner::TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) {
-    initial.resize(initial.size() + d);
-    problem.imitate(path, {initial.data() + initial.size() - d, d});
-  }
-  return initial;
-}
-
 Found best_of(const planner::Front& front, double straight) {
   Found best;
   for (const planner::Cost& cost : front.costs) {
@@ -179,6 +161,8 @@ std::vector<Results> solve(const std::vector<Case>& cases, const std::vector<Var
     optimizers.push_back(
         std::make_unique<planner::Pmomvo>(variant.optimizer, problem.dimension(), problem.objectives()));
   }
+  std::vector<planner::HorizonSettings> seeded(variants.size(), settings);
+  for (std::size_t v = 0; v < variants.size(); ++v) seeded[v].seeding = variants[v].seeding;
   std::vector<Results> results(variants.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     planner::PathRequest request = cases[i].request;
@@ -186,7 +170,7 @@ std::vector<Results> solve(const std::vector<Case>& cases, const std::vector<Var
     problem.prepare(request);
     const double straight = (request.target - request.position).norm();
     for (std::size_t v = 0; v < variants.size(); ++v) {
-      const auto initial = initial_solutions(problem, request, settings, variants[v].seeding);
+      const auto initial = start_solutions(problem, request, {}, seeded[v]);
       const planner::Budget budget{variants[v].optimizer.iterations};
       Found found;
       const auto search = [&](planner::WorkerPool& threads) {
@@ -310,13 +294,6 @@ struct PaperScore {
   int free = 0;
 };
 
-double volume_above(const std::vector<planner::Point2>& front, const planner::FrontBounds& bounds) {
-  std::vector<planner::Point2> normalised;
-  normalised.reserve(front.size());
-  for (const planner::Point2& point : front) normalised.push_back(normalise(point, bounds));
-  return planner::hypervolume(normalised, kCorner);
-}
-
 /// One step with every variant. The last score is that of all fronts together.
 void score_step(const std::vector<std::vector<planner::Point2>>& fronts, std::vector<PaperScore>& scores) {
   std::vector<std::vector<planner::Point2>> all = fronts;
@@ -325,8 +302,8 @@ void score_step(const std::vector<std::vector<planner::Point2>>& fronts, std::ve
   const planner::FrontBounds bounds = planner::front_bounds(all.back());
   const planner::FrontBounds units{bounds.ideal, {bounds.ideal[0] + 1.0, bounds.ideal[1] + 1.0}};
   for (std::size_t v = 0; v < all.size(); ++v) {
-    scores[v].relative.push_back(volume_above(all[v], bounds));
-    scores[v].absolute.push_back(volume_above(all[v], units));
+    scores[v].relative.push_back(volume_of(all[v], bounds));
+    scores[v].absolute.push_back(volume_of(all[v], units));
     scores[v].size.push_back(static_cast<double>(all[v].size()));
   }
 }

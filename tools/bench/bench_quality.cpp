@@ -4,6 +4,7 @@
 
 #include "planner/indicators.hpp"
 #include "planner/pmomvo.hpp"
+#include "tools/bench/fronts.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/missions.hpp"
 #include "tools/bench/pagmo_optimizer.hpp"
@@ -11,20 +12,12 @@
 namespace jink::bench {
 namespace {
 
-constexpr planner::Point2 kReference{1.1, 1.1};  // of normalised fronts
-constexpr double kTiny = 1e-3;                   // m and rad; nobody flies more exactly
+constexpr double kTiny = 1e-3;  // m and rad; nobody flies more exactly
 
 std::vector<planner::Point2> points_of(const planner::Front& front) {
   std::vector<planner::Point2> points;
   for (const planner::Cost& cost : front.costs) points.push_back({cost.f[0], cost.f[1]});
   return points;
-}
-
-/// Hypervolume of a front in units of the bounds.
-double volume_of(const std::vector<planner::Point2>& front, const planner::FrontBounds& bounds) {
-  std::vector<planner::Point2> normalised;
-  for (const planner::Point2& point : front) normalised.push_back(normalise(point, bounds));
-  return planner::hypervolume(normalised, kReference);
 }
 
 /// Hypervolumes of both optimizers on the same steps.
