@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "bridge/track_inbox.hpp"
+
 namespace jink::bridge {
 
 using planner::Track;
@@ -118,6 +120,7 @@ bool AdsbTracks::take(const AdsbReport& report) {
   track.position_sigma =
       std::hypot(kHorizontalSigma, report.altitude_type == kGeometricAltitude ? kGeometricSigma : kBarometricSigma);
   set_velocity(report, track);
+  if (const char* bad = refusal(track); bad != nullptr) return refuse(id, bad);
   aircraft_[id] = {track, report.received - std::max(0.0, report.since_contact)};
   return true;
 }
@@ -137,8 +140,11 @@ bool AdsbTracks::poll(TrackMessage& message) {
     const double age = std::max(0.0, now - aircraft.measured);
     Track track = aircraft.track;
     track.position += track.velocity * age;
-    track.position_sigma = std::hypot(track.position_sigma, track.velocity_sigma * age, kManoeuvre * age * age / 2.0);
-    track.velocity_sigma = std::hypot(track.velocity_sigma, kManoeuvre * age);
+    const double position_sigma =
+        std::hypot(track.position_sigma, track.velocity_sigma * age, kManoeuvre * age * age / 2.0);
+    // Beyond the limit a track is refused, and one that hardly anything is known of must not vanish.
+    track.position_sigma = std::min(position_sigma, TrackLimits::kSigma);
+    track.velocity_sigma = std::min(std::hypot(track.velocity_sigma, kManoeuvre * age), TrackLimits::kSigma);
     track.age = age;
     message.tracks.push_back(track);
   }

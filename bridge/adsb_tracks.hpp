@@ -61,7 +61,8 @@ struct EmitterModel {
 /// taken as above mean sea level, as the origin's is. A barometric one (QNH) is off by the weather and the temperature;
 /// a geometric one stands, with many senders, above the ellipsoid, which lies up to 100 m off the sea level. That error
 /// is in position_sigma: the root of the squares of kHorizontalSigma, of the altitude's (kBarometricSigma or
-/// kGeometricSigma), and of the velocity's times the age with what an aircraft turns in it (kManoeuvre).
+/// kGeometricSigma), and of the velocity's times the age with what an aircraft turns in it (kManoeuvre); never
+/// more than TrackLimits::kSigma.
 ///
 /// Velocity: what the flags call valid. Where the speed is not told, the track's horizontal velocity is 0 and
 /// velocity_sigma the speed of its class (EmitterModel); where the course is not, 0 and the speed told; where the

@@ -8,6 +8,7 @@
 #include <deque>
 #include <limits>
 
+#include "bridge/track_inbox.hpp"
 #include "tests/support/bridge_fakes.hpp"
 
 namespace {
@@ -129,6 +130,23 @@ TEST_F(AdsbTracksTest, WhatCannotBePlacedIsLeftOutAndSaid) {
                  "not heard by its receiver for too long");
   origin_.reset();
   expect_refused(good, "the autopilot's local origin is not known yet");
+}
+
+// Found by tests/fuzz/fuzz_telemetry: after 4 s its uncertainty was beyond what the track table takes.
+TEST_F(AdsbTracksTest, AnAircraftOfUnknownVelocityStaysAUsableTrackAsLongAsItIsInView) {
+  AdsbReport r = report(1, {0.0, 0.0, 100.0});
+  r.flags = 1 | 2;
+  r.emitter_type = 0;  // its class is not told either
+  auto track = message(r).tracks.at(0);
+  for (const double seconds : {1.0, 4.5, 5.9}) {
+    clock_.time = r.received + seconds;
+    TrackMessage later;
+    ASSERT_TRUE(tracks_.poll(later)) << seconds;
+    ASSERT_EQ(later.tracks.size(), 1U) << seconds;
+    EXPECT_EQ(jink::bridge::refusal(later.tracks[0]), nullptr) << seconds;
+    EXPECT_GT(later.tracks[0].position_sigma, track.position_sigma - 1e-9);
+    track = later.tracks[0];
+  }
 }
 
 TEST_F(AdsbTracksTest, AMessageHoldsAllInViewPredictedToNow) {
