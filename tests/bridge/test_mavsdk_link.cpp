@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/command_tracker.hpp"
 #include "bridge/px4.hpp"
 #include "tests/bridge/mavsdk_link_test.hpp"
 
@@ -26,6 +27,7 @@ namespace {
 namespace px4 = jink::bridge::px4;
 using jink::bridge::Command;
 using jink::bridge::CommandReport;
+using jink::bridge::CommandTracker;
 using jink::bridge::FlightMode;
 using jink::bridge::MavsdkLink;
 using jink::bridge::Setpoint;
@@ -266,7 +268,11 @@ TEST_F(MavsdkLinkTest, WithoutAnAutopilotNothingBlocksAndNothingIsSent) {
   EXPECT_EQ(link.state().health, "no SYS_STATUS yet, local position");
   EXPECT_FALSE(link.send(Setpoint{}));
   link.request(Command::kArm);
-  EXPECT_EQ(text(link.next_report()), "arm no: no autopilot");
+  const auto report = link.next_report();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->command, Command::kArm);
+  EXPECT_FALSE(report->accepted);
+  EXPECT_EQ(report->detail, "no autopilot");
 }
 
 // MAVSDK aborts the process when its handles go in the wrong order; here with traffic going on.
