@@ -251,7 +251,7 @@ class Inspector {
       }
     }
     if (!mismatch.empty()) return {Check::Level::kFault, topic, mismatch, "change that policy of the writer"};
-    const Check near_match = near_check(topic, type, they_write, absent);
+    Check near_match = near_check(topic, type, they_write, absent);
     if (!near_match.finding.empty()) return near_match;
     return {absent, topic, "no " + who,
             participants_.empty() ? nobody_remedy()
@@ -339,6 +339,7 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
   std::vector<Check> checks{inspector.domain_check(needed)};
   const auto levels = [&](const auto& probes) {
     std::vector<Check> found;
+    found.reserve(probes.size());
     for (const auto& probe : probes) found.push_back(inspector.reader_check(*probe, Check::Level::kMissing));
     return found;
   };
