@@ -115,6 +115,7 @@ void MavlinkEndpoint::Impl::poll(double now) {
     send_listed_parameters(link);
   }
   send_status_texts();
+  send_events();
 }
 
 /// After a reboot everything begins anew, rates and clocks too.
@@ -123,7 +124,8 @@ void MavlinkEndpoint::Impl::watch_reboots() {
   reboots_ = autopilot_.reboots();
   boot_ = now_;
   companion_heard_.reset();
-  companion_lost_ = false;
+  companion_lost_ = events_sent_ = false;
+  event_sequence_ = 0;
   for (MavlinkLink& link : links_) {
     reset_streams(link);
     link.ground_station = link.listing_parameters = false;
