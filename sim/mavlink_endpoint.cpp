@@ -40,6 +40,9 @@ const EndpointOptions& checked(const EndpointOptions& options) {
       !(std::abs(origin.altitude_m) <= 10000.0)) {
     throw std::invalid_argument("origin must be within 90 deg of latitude, 180 deg of longitude, 10 km of altitude");
   }
+  if (!(options.clock_rate >= 0.9 && options.clock_rate <= 1.1)) {
+    throw std::invalid_argument("clock_rate must be 0.9 to 1.1, is " + std::to_string(options.clock_rate));
+  }
   return options;
 }
 

@@ -49,10 +49,10 @@ std::vector<WireEvent> checks(bool stream, bool ground_station) {
   std::vector<WireEvent> events;
   events.push_back(WireEvent(0x01A893E0, 0x88)
                        .byte(0)
-                       .word(stream ? 0U : 1U << kSystem)  // errors
-                       .word(1U << kRemoteControl)         // warnings
-                       .word(modes)                        // to arm in
-                       .word(modes));                      // to fly
+                       .word(stream ? 0U : 1U << kSystem)                          // errors
+                       .word(1U << kRemoteControl)                                 // warnings
+                       .word(modes)                                                // to arm in
+                       .word(modes));                                              // to fly
   events.push_back(WireEvent(0x0105C2D9, 0x66).word(kModeMission).byte(kSystem));  // no mission
   if (!stream) events.push_back(WireEvent(0x012F1DC7, 0x33).word(kModeOffboard).byte(kSystem));
   events.push_back(WireEvent(0x0106ED29, 0x44).word(kAllModes).byte(kRemoteControl));  // none there

@@ -136,7 +136,7 @@ std::uint32_t MavlinkEndpoint::Impl::boot_ms() const {
 }
 
 std::uint64_t MavlinkEndpoint::Impl::boot_us(double boot_time) const {
-  return static_cast<std::uint64_t>(std::llround(boot_time * 1e6));
+  return static_cast<std::uint64_t>(std::llround(options_.clock_rate * boot_time * 1e6));
 }
 
 Geodetic MavlinkEndpoint::Impl::to_global(const Vec3& local) const {

@@ -28,8 +28,8 @@ using Results = std::vector<int>;
 /// An autopilot, its endpoint, a companion and a ground station.
 class MavlinkEndpointTest : public testing::Test {
  protected:
-  explicit MavlinkEndpointTest(bool airborne = false, double ready_delay = 0.0)
-      : autopilot(autopilot_options(airborne, ready_delay)), endpoint(autopilot, endpoint_options()) {}
+  explicit MavlinkEndpointTest(bool airborne = false, double ready_delay = 0.0, double clock_rate = 1.0)
+      : autopilot(autopilot_options(airborne, ready_delay)), endpoint(autopilot, endpoint_options(clock_rate)) {}
 
   static AutopilotOptions autopilot_options(bool airborne, double ready_delay) {
     AutopilotOptions options;
@@ -39,8 +39,9 @@ class MavlinkEndpointTest : public testing::Test {
     return options;
   }
 
-  [[nodiscard]] EndpointOptions endpoint_options() const {
+  [[nodiscard]] EndpointOptions endpoint_options(double clock_rate = 1.0) const {
     EndpointOptions options;
+    options.clock_rate = clock_rate;
     options.companion_local_port = options.ground_local_port = 0;
     options.companion_remote_port = companion.port();
     options.ground_remote_port = ground.port();

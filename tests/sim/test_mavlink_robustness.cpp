@@ -2,6 +2,7 @@
 // Strangers, noise and options that cannot be.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -98,6 +99,11 @@ TEST_F(MavlinkEndpointTest, RejectsOptionsOutOfRange) {
   EXPECT_THROW(MavlinkEndpoint(autopilot, options), std::invalid_argument);
   options = endpoint_options();
   options.address = "localhost";
+  EXPECT_THROW(MavlinkEndpoint(autopilot, options), std::invalid_argument);
+  options = endpoint_options();
+  options.clock_rate = 1.2;
+  EXPECT_THROW(MavlinkEndpoint(autopilot, options), std::invalid_argument);
+  options.clock_rate = std::nan("");
   EXPECT_THROW(MavlinkEndpoint(autopilot, options), std::invalid_argument);
   options = endpoint_options();
   options.origin.latitude_deg = 91;

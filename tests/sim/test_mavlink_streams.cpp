@@ -226,5 +226,43 @@ TEST_F(AirborneEndpointTest, AfterARebootElsewhereTheOriginIsThere) {
   EXPECT_NEAR(mavlink_msg_local_position_ned_get_x(&last(MAVLINK_MSG_ID_LOCAL_POSITION_NED)), 0.0, 1e-6);
 }
 
+class SlowClockEndpointTest : public MavlinkEndpointTest {
+ protected:
+  SlowClockEndpointTest() : MavlinkEndpointTest(true, 0.0, kSitlClockRate) {}
+};
+
+TEST_F(SlowClockEndpointTest, StampsLagAsPx4SitlsDoAndNothingElse) {
+  for (int i = 0; i < 1000; ++i) {
+    setpoint(kVelocityOnly, Vec3::Zero(), {1.25, 0.0, 0.0});
+    if (i == 10) {
+      ASSERT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
+    }
+    run(0.02);
+  }
+  heard.clear();
+  run(1.1);
+  const auto near = [&](double seconds) { EXPECT_NEAR(seconds, kSitlClockRate * autopilot.time(), 0.03); };
+  near(1e-3 * mavlink_msg_attitude_get_time_boot_ms(&last(MAVLINK_MSG_ID_ATTITUDE)));
+  near(1e-6 * static_cast<double>(mavlink_msg_highres_imu_get_time_usec(&last(MAVLINK_MSG_ID_HIGHRES_IMU))));
+  const auto& local = last(MAVLINK_MSG_ID_LOCAL_POSITION_NED);
+  near(1e-3 * mavlink_msg_local_position_ned_get_time_boot_ms(&local));
+  EXPECT_FLOAT_EQ(mavlink_msg_local_position_ned_get_vx(&local),
+                  static_cast<float>(autopilot.true_motion().velocity.y()));
+  EXPECT_NEAR(static_cast<double>(count(heard, MAVLINK_MSG_ID_ATTITUDE)), 110, 1);
+  mavlink_system_time_t system_time;
+  mavlink_msg_system_time_decode(&last(MAVLINK_MSG_ID_SYSTEM_TIME), &system_time);
+  const double unix_time = 1e-6 * static_cast<double>(system_time.time_unix_usec - 1767225600000000);
+  EXPECT_NEAR(1e-3 * system_time.time_boot_ms, kSitlClockRate * unix_time, 0.002);
+
+  heard.clear();
+  mavlink_timesync_t request{};
+  request.ts1 = 5;
+  tell(mavlink_msg_timesync_encode_status, request);
+  poll();
+  mavlink_timesync_t answer;
+  mavlink_msg_timesync_decode(&last(MAVLINK_MSG_ID_TIMESYNC), &answer);
+  near(1e-9 * static_cast<double>(answer.tc1));
+}
+
 }  // namespace
 }  // namespace jink::sim

@@ -35,6 +35,7 @@ class Peer:
         self.target = None  # NED; while it is set, setpoints answer ATTITUDE
         self.setpoint_sent = self.last_heartbeat = self.last_heard = 0.0  # monotonic
         self.texts, self.chunks, self.events = [], {}, []
+        self.system_times = []  # simulated time and the autopilot's, s
         self.position = None  # NED
         self.boot_time = 0.0  # s, the autopilot's
         self.heartbeat = self.landed_state = None
@@ -61,6 +62,8 @@ class Peer:
             self.ready = bool(message.onboard_control_sensors_health & READY)
         elif kind == "ATTITUDE":
             self.boot_time = message.time_boot_ms * 1e-3
+        elif kind == "SYSTEM_TIME":
+            self.system_times.append((message.time_unix_usec * 1e-6, message.time_boot_ms * 1e-3))
         elif kind == EVENT:
             payload = bytes(message.get_msgbuf()[10:-2])
             self.events.append(struct.unpack_from("<I", payload)[0])
@@ -136,6 +139,11 @@ class Peer:
 
     def armed(self):
         return bool(self.heartbeat and self.heartbeat.base_mode & ARMED)
+
+    def clock_rate(self):
+        """Seconds of the autopilot's clock in a simulated one."""
+        (unix, boot), (later_unix, later_boot) = self.system_times[0], self.system_times[-1]
+        return (later_boot - boot) / (later_unix - unix)
 
     def take_off(self, target):
         """Streams `target` (NED), arms in OFFBOARD and waits until it is flown to within half a metre."""

@@ -40,6 +40,8 @@ def test(jink, instance):
         check(companion.boot_time > begun + 2.0, "with a setpoint for every ATTITUDE time goes on")
         check(GIVEN_UP not in output.read_text(), "a companion that answers is not given up")
 
+        check(abs(companion.clock_rate() - 1.0) < 0.001, "the autopilot's clock is the simulation's")
+
         stands_then_goes_on(companion, output, 1)
         # Time runs freely now, and the autopilot misses its stream by its own clock.
         companion.expect(lambda: companion.heartbeat.system_status == MAV.MAV_STATE_CRITICAL, 20, "its failsafe")

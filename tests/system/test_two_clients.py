@@ -11,6 +11,7 @@ import threading
 from flight import CONFIG, Arena, Failed, check, interrupt, main
 from peer import HOLD, LAND, MAV, Peer
 
+SITL_CLOCK_RATE = 0.987
 TAKEOFF_DETECTED = 0x01414569
 
 
@@ -50,6 +51,9 @@ def test(jink, instance):
         check(not companion.texts, "the companion has not: texts go to ground stations alone")
         check(TAKEOFF_DETECTED in companion.events and TAKEOFF_DETECTED in ground.events, "events go to both")
         check(abs(ground.position[2] - companion.position[2]) < 1.0, "both see the vehicle at its height")
+
+        rate = companion.clock_rate()
+        check(abs(rate - SITL_CLOCK_RATE) < 0.001, f"the autopilot's clock runs as PX4 SITL's does: {rate:.4f} s in a second")
 
         with Beside(companion) as flying:
             check(ground.set_mode(4, 3) == [0, 0], "the ground station takes over with HOLD")
