@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands, arming and what the autopilot says of itself; autopilot_flight.cpp flies, autopilot_failsafe.cpp decides
-// what becomes of a flight that lacks something, autopilot_faults.cpp holds the faults.
+// what becomes of a flight that lacks something, autopilot_faults.cpp holds the faults,
+// autopilot_events.cpp what it says when.
 #include "sim/autopilot.hpp"
 
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 namespace jink::sim {
 namespace {
-
-constexpr std::size_t kMaxTexts = 64;
 
 // MAV_MODE_FLAG and MAV_STATE.
 constexpr unsigned kFlagCustom = 0x01;
@@ -78,6 +76,7 @@ Result Autopilot::arm(bool force) {
   const bool able = !crashed_ && landed_ && ready() && !refuses_arming_;
   if (!able || (!force && !prearm_ok())) {
     report(Severity::kCritical, "Arming denied: Resolve system health failures first");
+    tell(EventKind::kArmingRefused);
     return Result::kTemporarilyRejected;
   }
   armed_ = true;
@@ -89,6 +88,7 @@ Result Autopilot::arm(bool force) {
   model_.set_motors(Motors::kIdle);
   enter_active_mode();
   report(Severity::kInfo, "Armed by external command");
+  tell_armed(EventKind::kArmed, ArmingReason::kCommand);
   return Result::kAccepted;
 }
 
@@ -100,6 +100,7 @@ Result Autopilot::disarm(bool force) {
   }
   disarm_now();
   report(Severity::kInfo, "Disarmed by external command");
+  tell_armed(EventKind::kDisarmed, ArmingReason::kCommand);
   return Result::kAccepted;
 }
 
@@ -172,7 +173,10 @@ Result Autopilot::takeoff(std::optional<double> height) {
 
 Result Autopilot::land() {
   const Result result = change_mode(FlightMode::kLand);
-  if (armed_ && result == Result::kAccepted) report(Severity::kInfo, "Landing at current position");
+  if (armed_ && result == Result::kAccepted) {
+    report(Severity::kInfo, "Landing at current position");
+    tell(EventKind::kLanding);
+  }
   return result;
 }
 
@@ -261,15 +265,6 @@ Heartbeat Autopilot::heartbeat() const {
 std::optional<Setpoint> Autopilot::active_setpoint() const {
   if (model_.motors() != Motors::kFlying) return std::nullopt;
   return active_setpoint_;
-}
-
-void Autopilot::report(Severity severity, std::string text) {
-  if (texts_.size() == kMaxTexts) texts_.erase(texts_.begin());
-  texts_.push_back({severity, std::move(text)});
-}
-
-std::vector<StatusText> Autopilot::take_status_texts() {
-  return std::exchange(texts_, {});
 }
 
 }  // namespace jink::sim

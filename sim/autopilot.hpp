@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/estimator.hpp"
+#include "sim/flight_event.hpp"
 #include "sim/parameters.hpp"
 #include "sim/vehicle_model.hpp"
 #include "sim/wind.hpp"
@@ -172,6 +173,8 @@ class Autopilot {
   [[nodiscard]] std::optional<Setpoint> active_setpoint() const;
   /// The texts since the last call, oldest first (at most the last 64).
   [[nodiscard]] std::vector<StatusText> take_status_texts();
+  /// The events since the last call, likewise.
+  [[nodiscard]] std::vector<FlightEvent> take_events();
 
  private:
   /// kLanded: rotors idle; kRamp: thrust comes up slowly after the take-off was asked for; kFlying.
@@ -180,6 +183,12 @@ class Autopilot {
   Result change_mode(FlightMode mode);
   void enter_active_mode();
   void disarm_now();
+
+  // autopilot_events.cpp
+  void tell(EventKind kind, std::uint8_t detail = 0);
+  void tell_armed(EventKind kind, ArmingReason reason);
+  void tell_failsafe(FlightMode mode);
+  void watch_checks();
 
   // autopilot_failsafe.cpp
   void update_failsafe();
@@ -229,6 +238,7 @@ class Autopilot {
   BatteryLevel reported_battery_ = BatteryLevel::kOk;  ///< the worst in this flight
   BatteryLevel armed_battery_ = BatteryLevel::kOk;     ///< known when it was armed: not acted upon
   std::vector<StatusText> texts_;
+  std::vector<FlightEvent> events_;
 
   FlightMode intended_mode_ = FlightMode::kHold;
   FlightMode mode_after_disarm_ = FlightMode::kHold;  ///< the last one that does not forbid arming
@@ -242,6 +252,7 @@ class Autopilot {
   bool return_climbed_ = false;
   bool return_arrived_ = false;
   bool ready_reported_ = false;
+  bool stream_reported_ = false;     ///< by the last report of the arming checks
   bool home_was_set_ = false;        ///< by command, since it was last disarmed
   bool battery_taken_over_ = false;  ///< by a change of mode during its failsafe
   bool remote_control_ = false;      ///< a pilot has used one

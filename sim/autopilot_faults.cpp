@@ -37,9 +37,10 @@ BatteryLevel Autopilot::battery_level() const {
 void Autopilot::reboot() {
   disarm_now();
   texts_.clear();
+  events_.clear();
   last_offboard_.reset();
   intended_mode_ = mode_after_disarm_ = guided_mode_ = FlightMode::kHold;
-  has_flown_ = ready_reported_ = false;
+  has_flown_ = ready_reported_ = stream_reported_ = false;
   landed_ = model_.on_ground();
   boot_step_ = steps_;
   ++reboots_;

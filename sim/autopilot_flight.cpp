@@ -48,6 +48,7 @@ void Autopilot::step() {
     report(Severity::kInfo, "Ready for takeoff!");
   }
   update_battery();
+  watch_checks();
   if (armed_) {
     update_failsafe();
     if (guided_mode_ != mode()) enter_active_mode();
@@ -220,6 +221,7 @@ void Autopilot::update_landed() {
       landed_ = false;
       has_flown_ = true;
       report(Severity::kInfo, "Takeoff detected");
+      tell(EventKind::kTakeoffDetected);
     }
     return;
   }
@@ -238,6 +240,7 @@ void Autopilot::touch_down() {
   phase_ = Phase::kLanded;
   if (armed_) model_.set_motors(Motors::kIdle);
   report(Severity::kInfo, "Landing detected");
+  tell(EventKind::kLandingDetected);
 }
 
 void Autopilot::update_auto_disarm() {
@@ -246,6 +249,8 @@ void Autopilot::update_auto_disarm() {
   const double since = has_flown_ ? landed_at_ : armed_at_;
   if (delay <= 0.0 || time() - since < delay) return;
   report(Severity::kInfo, has_flown_ ? "Disarmed by landing" : "Disarmed by auto preflight disarming");
+  // The number of the other reason is in no recording.
+  if (has_flown_) tell_armed(EventKind::kDisarmed, ArmingReason::kLanding);
   disarm_now();
 }
 

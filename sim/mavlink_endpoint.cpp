@@ -40,6 +40,9 @@ const EndpointOptions& checked(const EndpointOptions& options) {
       !(std::abs(origin.altitude_m) <= 10000.0)) {
     throw std::invalid_argument("origin must be within 90 deg of latitude, 180 deg of longitude, 10 km of altitude");
   }
+  if (!(options.clock_rate >= 0.9 && options.clock_rate <= 1.1)) {
+    throw std::invalid_argument("clock_rate must be 0.9 to 1.1, is " + std::to_string(options.clock_rate));
+  }
   return options;
 }
 
@@ -115,6 +118,7 @@ void MavlinkEndpoint::Impl::poll(double now) {
     send_listed_parameters(link);
   }
   send_status_texts();
+  send_events();
 }
 
 /// After a reboot everything begins anew, rates and clocks too.
@@ -123,7 +127,8 @@ void MavlinkEndpoint::Impl::watch_reboots() {
   reboots_ = autopilot_.reboots();
   boot_ = now_;
   companion_heard_.reset();
-  companion_lost_ = false;
+  companion_lost_ = events_sent_ = false;
+  event_sequence_ = 0;
   for (MavlinkLink& link : links_) {
     reset_streams(link);
     link.ground_station = link.listing_parameters = false;

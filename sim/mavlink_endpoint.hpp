@@ -14,6 +14,9 @@
 
 namespace jink::sim {
 
+/// How fast PX4's SITL's clock runs against the wall, measured: EndpointOptions::clock_rate of one in real time.
+inline constexpr double kSitlClockRate = 0.987;
+
 /// Instance N of PX4's SITL: system id N + 1, ports 14580 + N to 14540 + N and 18570 + N to 14550.
 struct EndpointOptions {
   int instance = 0;                                     ///< 0 to 9
@@ -26,6 +29,9 @@ struct EndpointOptions {
   Geodetic origin = kSitlOrigin;                           ///< of the local frame
   std::uint64_t unix_time_at_start_us = 1767225600000000;  ///< for SYSTEM_TIME: 1 January 2026
   std::uint64_t seed = 1;                                  ///< of what befalls packets on an impaired link
+  /// Seconds of the autopilot's clock, by which its messages are stamped, in one of the simulation's: 0.9 to 1.1. The
+  /// stamps alone: motion, rates and time-outs keep the simulation's time. SYSTEM_TIME's unix time does too.
+  double clock_rate = 1.0;
 };
 
 struct EndpointCounters {
@@ -38,7 +44,7 @@ struct EndpointCounters {
 class MavlinkEndpoint {
  public:
   /// Throws std::runtime_error, one line that names the port and what to do, when a port is taken, and
-  /// std::invalid_argument for an instance, an address or an origin out of range.
+  /// std::invalid_argument for an instance, an address, an origin or a clock rate out of range.
   MavlinkEndpoint(Autopilot& autopilot, const EndpointOptions& options);
   ~MavlinkEndpoint();
   MavlinkEndpoint(const MavlinkEndpoint&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The endpoint's inside, shared by its sources: mavlink_endpoint.cpp (what comes in), mavlink_commands.cpp (commands),
-// mavlink_streams.cpp (what goes out), mavlink_sensors.cpp. No other file includes it.
+// mavlink_streams.cpp (what goes out), mavlink_sensors.cpp, mavlink_events.cpp. No other file includes it.
 #pragma once
 
 #include <span>
@@ -82,7 +82,8 @@ class MavlinkEndpoint::Impl {
   void reset_streams(MavlinkLink& link) const;
   void send_streams(MavlinkLink& link);
   [[nodiscard]] std::uint32_t boot_ms() const;
-  [[nodiscard]] std::uint64_t boot_us() const;
+  [[nodiscard]] std::uint64_t boot_us() const { return boot_us(autopilot_.boot_time()); }
+  [[nodiscard]] std::uint64_t boot_us(double boot_time) const;
   /// Of a point in the autopilot's local frame, and back.
   [[nodiscard]] Geodetic to_global(const Vec3& local) const;
   [[nodiscard]] Vec3 to_local(const Geodetic& place) const;
@@ -110,6 +111,11 @@ class MavlinkEndpoint::Impl {
   void send_mission_current(MavlinkLink& link);
   void send_autopilot_version(MavlinkLink& link);
 
+  // mavlink_events.cpp
+  void send_events();
+  void send_event_sequence(MavlinkLink& link);
+  [[nodiscard]] bool ground_station_heard() const;
+
   // mavlink_sensors.cpp
   void send_highres_imu(MavlinkLink& link);
   void send_gps_raw(MavlinkLink& link);
@@ -133,6 +139,8 @@ class MavlinkEndpoint::Impl {
   double start_factor_;  ///< of PX4's start-up times: less when the autopilot is ready sooner
   std::uint16_t next_text_id_ = 1;
   std::uint32_t next_ping_ = 0;
+  std::uint16_t event_sequence_ = 0;  ///< of the newest event
+  bool events_sent_ = false;          ///< since the boot
   std::vector<MavlinkLink> links_;
 };
 

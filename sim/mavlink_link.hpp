@@ -3,7 +3,7 @@
 // messages mean is not its business.
 #pragma once
 
-#include <development/mavlink.h>
+#include <px4_events/mavlink.h>
 
 #include <array>
 #include <cstdint>

@@ -90,6 +90,7 @@ std::span<const MavlinkEndpoint::Impl::MessageKind> MavlinkEndpoint::Impl::messa
       MessageKind{MAVLINK_MSG_ID_CURRENT_MODE, 0.5, kLinkUp, &Impl::send_current_mode},
       MessageKind{MAVLINK_MSG_ID_HOME_POSITION, 0.5, 2.4, &Impl::send_home},
       MessageKind{MAVLINK_MSG_ID_VIBRATION, 0.5, kLinkUp, &Impl::send_vibration},
+      MessageKind{MAVLINK_MSG_ID_CURRENT_EVENT_SEQUENCE, 1.0 / 3.0, kLinkUp, &Impl::send_event_sequence},
       // Once by itself: next_due passes but once, for its interval is none.
       MessageKind{MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, 0, 1.4, &Impl::send_gps_origin},
       MessageKind{MAVLINK_MSG_ID_AUTOPILOT_VERSION, 0, planner::kInfinity, &Impl::send_autopilot_version},
@@ -134,8 +135,8 @@ std::uint32_t MavlinkEndpoint::Impl::boot_ms() const {
   return static_cast<std::uint32_t>(boot_us() / 1000);
 }
 
-std::uint64_t MavlinkEndpoint::Impl::boot_us() const {
-  return static_cast<std::uint64_t>(std::llround(autopilot_.boot_time() * 1e6));
+std::uint64_t MavlinkEndpoint::Impl::boot_us(double boot_time) const {
+  return static_cast<std::uint64_t>(std::llround(options_.clock_rate * boot_time * 1e6));
 }
 
 Geodetic MavlinkEndpoint::Impl::to_global(const Vec3& local) const {

@@ -45,6 +45,7 @@ void Simulator::add_vehicles(const std::vector<config::ScenarioVehicle>& specs) 
     set_conditions(world_.scenario(), options_.seed, static_cast<int>(k), vehicle);
     EndpointOptions endpoint;
     endpoint.instance = options_.instance + static_cast<int>(k);
+    endpoint.clock_rate = options_.clock_rate;
     if (!options_.endpoints.empty()) endpoint = options_.endpoints.at(k);
     endpoint.seed = options_.seed;
     vehicle.system_id = endpoint.instance + 1;

@@ -34,6 +34,7 @@ struct SimOptions {
   std::string log;
   std::string clock = "start";
   double speed = 1.0;
+  std::optional<double> boot_clock;
   double duration = 0.0;  // of simulated time; 0: until Ctrl-C
   int domain = 0;
   int instance = 0;
@@ -228,6 +229,8 @@ int run(const SimOptions& options) {
   choices.instance = options.instance;
   choices.vehicles = !options.no_vehicle;
   choices.immediate_clock = options.clock == "immediate";
+  // In lockstep there is no wall clock that it could lag behind.
+  choices.clock_rate = options.boot_clock.value_or(options.lockstep ? 1.0 : sim::kSitlClockRate);
   std::optional<DdsSides> dds;
   if (options.dds_vehicle) dds.emplace(options, 1 + scenario.vehicles.size());
   const auto on_step = [&dds](std::size_t k, double now, sim::Autopilot& autopilot) {
@@ -282,6 +285,10 @@ Subcommand add_sim(CLI::App& jink) {
       ->capture_default_str();
   app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
       ->check(CLI::Range(0.1, 1e6));
+  app->add_option("--boot-clock", options->boot_clock,
+                  "seconds of the autopilot's clock, by which its messages are stamped, in a simulated one, 0.9 to 1.1 "
+                  "(default: 0.987, PX4 SITL's against the wall; 1 with --lockstep)")
+      ->check(CLI::Range(0.9, 1.1));
   app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)");
   options->common.add_to(*app);
   return {app, [options] { return run(*options); }};

@@ -8,7 +8,7 @@
 #include <array>
 #include <memory>
 
-#include "development/mavlink.h"
+#include "px4_events/mavlink.h"
 #include "sim/mavlink_endpoint.hpp"
 #include "sim/udp_socket.hpp"
 #include "tests/fuzz/fuzz.hpp"

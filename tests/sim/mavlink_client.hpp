@@ -2,8 +2,8 @@
 // What talks to the simulator's endpoint in its tests.
 #pragma once
 
-#include <development/mavlink.h>
 #include <gtest/gtest.h>
+#include <px4_events/mavlink.h>
 
 #include <array>
 #include <cstdint>

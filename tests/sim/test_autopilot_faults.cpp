@@ -46,28 +46,22 @@ TEST(GpsFault, FiveSecondsLaterOffboardFallsToAltitudeSinksAndDrifts) {
   EXPECT_EQ(flight.autopilot.arm(), Result::kTemporarilyRejected);
 }
 
-TEST(GpsFault, WhenItComesBackSoDoesOffboardWithAReset) {
-  OffboardFlight flight;
-  flight.autopilot.set_gps(false);
-  flight.run(7.0, &flight.here);
-  ASSERT_EQ(flight.autopilot.mode(), FlightMode::kAltitude);
-  const auto resets = flight.autopilot.estimator().reset_counter();
-  flight.autopilot.set_gps(true);
-  flight.run(0.1, &flight.here);
-  EXPECT_TRUE(flight.autopilot.offboard_active());
-  EXPECT_EQ(flight.autopilot.estimator().reset_counter(), resets + 1);
-  flight.run(10.0, &flight.here);
-  EXPECT_LT((flight.autopilot.true_motion().position - flight.here.position).norm(), 0.2);
-}
-
-TEST(GpsFault, AShortCutIsNoFailsafe) {
-  OffboardFlight flight;
-  flight.autopilot.set_gps(false);
-  flight.run(4.0, &flight.here);
-  flight.autopilot.set_gps(true);
-  flight.run(10.0, &flight.here);
-  EXPECT_FALSE(flight.said("Failsafe activated"));
-  EXPECT_LT((flight.autopilot.true_motion().position - flight.here.position).norm(), 0.2);
+TEST(GpsFault, WhenItComesBackSoDoesOffboardAndOnlyALongCutIsAFailsafeWithAReset) {
+  for (const bool is_long : {false, true}) {
+    SCOPED_TRACE(is_long);
+    OffboardFlight flight;
+    const auto resets = flight.autopilot.estimator().reset_counter();
+    flight.autopilot.set_gps(false);
+    flight.run(is_long ? 7.0 : 4.0, &flight.here);
+    ASSERT_EQ(flight.autopilot.mode(), is_long ? FlightMode::kAltitude : FlightMode::kOffboard);
+    flight.autopilot.set_gps(true);
+    flight.run(0.1, &flight.here);
+    EXPECT_TRUE(flight.autopilot.offboard_active());
+    EXPECT_EQ(flight.autopilot.estimator().reset_counter(), resets + (is_long ? 1 : 0));
+    flight.run(10.0, &flight.here);
+    EXPECT_EQ(flight.said("Failsafe activated"), is_long);
+    EXPECT_LT((flight.autopilot.true_motion().position - flight.here.position).norm(), 0.2);
+  }
 }
 
 TEST(GpsFault, HoldCannotHoldAndDescends) {
@@ -249,7 +243,7 @@ TEST(RebootFault, OnTheGroundItIsReadyAfterItsStartAndFlies) {
 
 // A pilot.
 
-TEST(Pilot, CanFlyByHandAndTheStreamDoesNotTakeItBack) {
+TEST(Pilot, FliesByHandTheStreamDoesNotTakeItBackAndWithHimALostOneHolds) {
   OffboardFlight flight;
   EXPECT_EQ(flight.autopilot.set_mode(3), Result::kTemporarilyRejected);
   EXPECT_EQ(flight.autopilot.pilot_mode(FlightMode::kPosition), Result::kAccepted);
@@ -259,6 +253,10 @@ TEST(Pilot, CanFlyByHandAndTheStreamDoesNotTakeItBack) {
   EXPECT_LT((flight.autopilot.true_motion().position - Vec3(0, 0, 10)).norm(), 0.1);
   EXPECT_EQ(flight.autopilot.pilot_mode(FlightMode::kOffboard), Result::kAccepted);
   EXPECT_TRUE(flight.autopilot.offboard_active());
+  flight.run(2.0, &flight.here);
+  flight.run(5.0);  // without a remote control it would sink
+  expect_heartbeat(flight.autopilot, 0xd1, 0x00030000, 5);
+  EXPECT_NEAR(flight.autopilot.true_motion().position.z(), 10.0, 0.1);
 }
 
 TEST(Pilot, OffboardNeedsAStreamForHimToo) {
@@ -282,17 +280,6 @@ TEST(Pilot, InTheWindPositionHoldsAndAltitudeDrifts) {
   EXPECT_NEAR(flight.autopilot.true_motion().velocity.x(), 2.0, 0.1);
   EXPECT_NEAR(flight.autopilot.true_motion().position.z(), place.z(), 0.1);
   EXPECT_GT(flight.autopilot.true_motion().position.x(), place.x() + 10.0);
-}
-
-TEST(Pilot, WithASafetyPilotALostStreamHoldsInsteadOfSinking) {
-  OffboardFlight flight;
-  ASSERT_EQ(flight.autopilot.pilot_mode(FlightMode::kPosition), Result::kAccepted);
-  flight.run(1.0, &flight.here);
-  ASSERT_EQ(flight.autopilot.pilot_mode(FlightMode::kOffboard), Result::kAccepted);
-  flight.run(2.0, &flight.here);
-  flight.run(5.0);
-  expect_heartbeat(flight.autopilot, 0xd1, 0x00030000, 5);
-  EXPECT_NEAR(flight.autopilot.true_motion().position.z(), 10.0, 0.1);
 }
 
 // Refusals.

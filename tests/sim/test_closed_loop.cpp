@@ -141,6 +141,10 @@ TEST(ClosedLoop, ReachesTheTargetsOfThePapersScenarios) {
   for (const char* name : {"table2-1", "table2-2", "table2-3", "table2-4", "table2-5"}) expect_reached(name, 1);
 }
 
+TEST(ClosedLoop, ReachesTheTargetOnABadDay) {
+  for (const std::uint64_t seed : {1U, 2U}) expect_reached("faults", seed);
+}
+
 TEST(ClosedLoop, IsTheSameToTheBitAtAnyThreadCountAndAgain) {
   config::Scenario scenario = shipped("crossing");
   scenario.time_limit = 6.0;  // enough for a difference to show

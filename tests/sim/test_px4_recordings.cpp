@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -66,17 +67,52 @@ struct Timed {
   Value value{};
 };
 
+/// An event of PX4's events interface.
+struct Event {
+  std::uint32_t id = 0;
+  int log_levels = 0;
+  std::vector<std::uint8_t> arguments;
+  bool operator==(const Event&) const = default;
+};
+
 /// What a companion can see of a flight.
 struct Story {
   std::vector<Timed<std::pair<int, int>>> acks;  ///< command and result, in order
   std::vector<Timed<Heartbeat>> heartbeats;      ///< at each change
   std::vector<Timed<int>> landed_states;         ///< at each change
   std::vector<Timed<std::string>> texts;
+  std::vector<Timed<Event>> events;
+  std::vector<double> event_sequences;         ///< when the newest sequence number was told
+  std::optional<std::uint16_t> last_sequence;  ///< of an event or told, whichever was later
   std::vector<Timed<Vec3>> positions_ned;
 };
 
 bool same(const Heartbeat& a, const Heartbeat& b) {
   return a.base_mode == b.base_mode && a.custom_mode == b.custom_mode && a.system_status == b.system_status;
+}
+
+/// Its sequence number is one more than the last; the simulator keeps no log on board, whose event is left out.
+void add_event(Story& story, double t, const mavlink_message_t& message) {
+  constexpr std::uint32_t kLogStarted = 0x01125BEF;
+  mavlink_event_t event;
+  mavlink_msg_event_decode(&message, &event);
+  if (story.last_sequence) {
+    EXPECT_EQ(event.sequence, static_cast<std::uint16_t>(*story.last_sequence + 1)) << t;
+  }
+  story.last_sequence = event.sequence;
+  EXPECT_EQ(event.destination_system, 0);
+  EXPECT_EQ(event.destination_component, 0);
+  if (event.id == kLogStarted) return;
+  story.events.push_back({t, {event.id, event.log_levels, {std::begin(event.arguments), std::end(event.arguments)}}});
+}
+
+void add_event_sequence(Story& story, double t, const mavlink_message_t& message) {
+  const std::uint16_t sequence = mavlink_msg_current_event_sequence_get_sequence(&message);
+  if (story.last_sequence) {
+    EXPECT_EQ(sequence, *story.last_sequence) << t;
+  }
+  story.last_sequence = sequence;
+  story.event_sequences.push_back(t);
 }
 
 void add(Story& story, double t, const mavlink_message_t& message) {
@@ -112,6 +148,12 @@ void add(Story& story, double t, const mavlink_message_t& message) {
       }
       break;
     }
+    case MAVLINK_MSG_ID_EVENT:
+      add_event(story, t, message);
+      break;
+    case MAVLINK_MSG_ID_CURRENT_EVENT_SEQUENCE:
+      add_event_sequence(story, t, message);
+      break;
     case MAVLINK_MSG_ID_LOCAL_POSITION_NED: {
       mavlink_local_position_ned_t p;
       mavlink_msg_local_position_ned_decode(&message, &p);
@@ -168,6 +210,9 @@ constexpr double kAckTolerance = 0.03;
 constexpr double kHeartbeatTolerance = 1.1;    // each has its own phase of 1 Hz
 constexpr double kLandedStateTolerance = 0.5;  // 5 Hz, and a landing whose height wanders
 constexpr double kTextTolerance = 0.5;
+constexpr double kEventTolerance =
+    0.15;  // of what a command, a setpoint or the want of one causes: that takes PX4 1.0 to 1.1 s
+constexpr double kSequencePeriod = 3.0;
 // m, over the whole flight: PX4's estimate wanders by up to 0.4 m, its steps differ by as much from one another, and it
 // drifts 0.7 m while it sinks without a stream.
 constexpr double kPositionRms = 0.6;
@@ -180,6 +225,29 @@ void expect_same(const char* what, const std::vector<Timed<Value>>& px4, const s
   for (std::size_t i = 0; i < px4.size(); ++i) {
     EXPECT_TRUE(equal(px4[i].value, simulator[i].value)) << what << " number " << i << " at " << px4[i].t << " s";
     EXPECT_NEAR(px4[i].t, simulator[i].t, tolerance) << what << " number " << i;
+  }
+}
+
+/// Those that tell of take-off and landing may be as far apart as the landed states are.
+void expect_same_events(const Story& px4, const Story& simulator) {
+  constexpr std::uint32_t kTakeoffDetected = 0x01414569;
+  constexpr std::uint32_t kLandingDetected = 0x019638AC;
+  constexpr std::uint32_t kDisarmed = 0x01F46777;
+  ASSERT_GT(px4.events.size(), 15U);
+  ASSERT_EQ(px4.events.size(), simulator.events.size());
+  for (std::size_t i = 0; i < px4.events.size(); ++i) {
+    const Event& event = px4.events[i].value;
+    const bool moves = event.id == kTakeoffDetected || event.id == kLandingDetected || event.id == kDisarmed;
+    EXPECT_TRUE(event == simulator.events[i].value)
+        << "event number " << i << std::hex << ": " << event.id << " and " << simulator.events[i].value.id;
+    EXPECT_NEAR(px4.events[i].t, simulator.events[i].t, moves ? kLandedStateTolerance : kEventTolerance)
+        << "event number " << i;
+  }
+  for (const Story* story : {&px4, &simulator}) {
+    const auto& times = story->event_sequences;
+    ASSERT_GT(times.size(), 10U);
+    EXPECT_NEAR((times.back() - times.front()) / static_cast<double>(times.size() - 1), kSequencePeriod,
+                0.1 * kSequencePeriod);
   }
 }
 
@@ -209,6 +277,7 @@ void expect_same_story(const std::string& name, std::int32_t com_obl_rc_act) {
   expect_same("heartbeat", px4.heartbeats, simulator.heartbeats, kHeartbeatTolerance, same);
   expect_same("landed state", px4.landed_states, simulator.landed_states, kLandedStateTolerance, std::equal_to<>());
   expect_same("text", px4.texts, simulator.texts, kTextTolerance, std::equal_to<>());
+  expect_same_events(px4, simulator);
   expect_same_flight(px4, simulator);
 }
 

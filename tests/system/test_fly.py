@@ -27,7 +27,7 @@ def test(jink, instance, scenario, mission):
 
         truth = arena.read("sim.json")
         check(truth["min_clearance"] > 0.0, f"smallest true clearance {truth['min_clearance']:.2f} m")
-        check(truth["outcome"] not in ("collision", "left_world"), f"sim: {truth['outcome']}")
+        check(truth["outcome"] == "reached", f"sim: {truth['outcome']}, {truth['reason']}")
 
         records = arena.log("sim.jsonl", "truth")
         check(len(records) > 250, f"{len(records)} records of the truth")

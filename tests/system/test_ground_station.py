@@ -6,90 +6,15 @@
 Its port, 14550, is shared by all instances: it listens to its own system alone, and must not run beside another one.
 """
 
-import os
 import time
 
-os.environ["MAVLINK20"] = "1"  # read when pymavlink is imported
-from pymavlink import mavutil  # noqa: E402
-
-from flight import CONFIG, Arena, Failed, check, interrupt, main, wait
-
-MAV = mavutil.mavlink
-HOLD, LAND, OFFBOARD = 0x03040000, 0x06040000, 0x00060000
-ARMED = 0x80
-
-
-class GroundStation:
-    def __init__(self, system):
-        self.system = system
-        self.link = mavutil.mavlink_connection("udpin:127.0.0.1:14550", source_system=255, source_component=190, dialect="common")
-        self.last_heartbeat = 0.0
-        self.texts = []
-        self.chunks = {}
-        self.position = None  # NED
-        self.heartbeat = None
-        self.landed_state = None
-
-    def note(self, message):
-        kind = message.get_type()
-        if kind == "HEARTBEAT":
-            self.heartbeat = message
-        elif kind == "LOCAL_POSITION_NED":
-            self.position = (message.x, message.y, message.z)
-        elif kind == "EXTENDED_SYS_STATE":
-            self.landed_state = message.landed_state
-        elif kind == "STATUSTEXT":
-            text = self.chunks.pop(message.id, "") + message.text
-            if text.endswith("\t"):
-                self.texts.append(text.rstrip("\t"))
-            else:
-                self.chunks[message.id] = text
-
-    def pump(self, seconds, until=lambda message: False):
-        """Listens, with a heartbeat a second, for `seconds` or until `until(message)`; that message, else None."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if time.monotonic() - self.last_heartbeat > 1.0:
-                self.last_heartbeat = time.monotonic()
-                self.link.mav.heartbeat_send(MAV.MAV_TYPE_GCS, MAV.MAV_AUTOPILOT_INVALID, 0, 0, MAV.MAV_STATE_ACTIVE)
-            message = self.link.recv_match(blocking=True, timeout=0.05)
-            if message is None or message.get_srcSystem() != self.system or message.get_srcComponent() != 1:
-                continue
-            self.note(message)
-            if until(message):
-                return message
-        return None
-
-    def expect(self, condition, seconds, text):
-        if not condition() and self.pump(seconds, lambda _: condition()) is None:
-            raise Failed(f"the ground station waited {seconds} s in vain for {text}; texts: {self.texts}")
-        check(True, f"the ground station saw: {text}")
-
-    def command(self, number, *parameters, acks=1):
-        """The results of the acknowledgements to a command."""
-        fields = list(parameters) + [0.0] * (7 - len(parameters))
-        self.link.mav.command_long_send(self.system, 1, number, 0, *fields)
-        results = []
-        while len(results) < acks:
-            ack = self.pump(5.0, lambda m: m.get_type() == "COMMAND_ACK" and m.command == number and m.get_srcSystem() == self.system)
-            if ack is None:
-                break
-            results.append(ack.result)
-        return results
-
-    def set_mode(self, main_mode, sub_mode=0):
-        return self.command(MAV.MAV_CMD_DO_SET_MODE, 1, main_mode, sub_mode, acks=2)
-
-    def mode(self):
-        return self.heartbeat.custom_mode if self.heartbeat else None
-
-    def armed(self):
-        return bool(self.heartbeat and self.heartbeat.base_mode & ARMED)
+from flight import CONFIG, Arena, check, interrupt, main, wait
+from peer import HOLD, LAND, MAV, OFFBOARD, Peer
 
 
 def test(jink, instance):
     with Arena(jink, int(instance)) as arena:
-        ground = GroundStation(arena.instance + 1)
+        ground = Peer.ground_station(arena.instance + 1)
         sim = arena.sim(CONFIG / "scenarios" / "crossing.yaml")
         ground.expect(lambda: ground.heartbeat is not None, 30, "a heartbeat of the simulator")
         fly = arena.fly(arena.mission("sitl"))

@@ -4,8 +4,6 @@
     test_team.py JINK INSTANCE swap|cross
 """
 
-import math
-
 import yaml
 
 from flight import CONFIG, Arena, check, interrupt, main, wait
@@ -13,12 +11,7 @@ from flight import CONFIG, Arena, check, interrupt, main, wait
 HEIGHT = 3.0
 
 
-def routes(kind):
-    """Start and target of each vehicle."""
-    if kind == "swap":
-        return [([0.0, 0.0, HEIGHT], [20.0, 0.0, HEIGHT]), ([20.0, 0.0, HEIGHT], [0.0, 0.0, HEIGHT])]
-    ends = [[8.0 * math.cos(k * math.pi / 2), 8.0 * math.sin(k * math.pi / 2), HEIGHT] for k in range(4)]
-    return [(ends[k], ends[(k + 2) % 4]) for k in range(4)]
+SWAP = [([0.0, 0.0, HEIGHT], [20.0, 0.0, HEIGHT]), ([20.0, 0.0, HEIGHT], [0.0, 0.0, HEIGHT])]
 
 
 def scenario(arena, kind, ways):
@@ -30,33 +23,37 @@ def scenario(arena, kind, ways):
     return file
 
 
-def mission(arena, k, target):
-    text = yaml.safe_load((CONFIG / "missions" / "sitl.yaml").read_text())
-    text.update(name=f"vehicle-{k}", connection=f"udpin://127.0.0.1:{14540 + arena.instance + k}",
-                takeoff_height=HEIGHT, waypoints=[target], dds={"domain": arena.domain}, intents=True)
+def mission(arena, k, base, **changes):
+    """A shipped mission on this arena's ports and domain."""
+    text = yaml.safe_load((CONFIG / "missions" / f"{base}.yaml").read_text())
+    text.update(connection=f"udpin://127.0.0.1:{14540 + arena.instance + k}", dds={"domain": arena.domain}, **changes)
     file = arena.folder / f"mission{k}.yaml"
     file.write_text(yaml.safe_dump(text))
     return file
 
 
 def test(jink, instance, kind):
-    ways = routes(kind)
     with Arena(jink, int(instance)) as arena:
-        sim = arena.sim(scenario(arena, kind, ways))
-        flights = [arena.start(f"fly{k}", [jink, "fly", mission(arena, k, target), "--threads", 1,
-                                           "--json", arena.folder / f"fly{k}.json",
+        if kind == "swap":
+            sim = arena.sim(scenario(arena, kind, SWAP))
+            missions = [mission(arena, k, "sitl", takeoff_height=HEIGHT, waypoints=[target], intents=True)
+                        for k, (_, target) in enumerate(SWAP)]
+        else:  # as shipped
+            sim = arena.sim(CONFIG / "scenarios" / "team.yaml")
+            missions = [mission(arena, k, f"team-{k}") for k in range(4)]
+        flights = [arena.start(f"fly{k}", [jink, "fly", file, "--threads", 1, "--json", arena.folder / f"fly{k}.json",
                                            "--log", arena.folder / f"fly{k}.jsonl"])
-                   for k, (_, target) in enumerate(ways)]
+                   for k, file in enumerate(missions)]
         for k, fly in enumerate(flights):
             check(wait(fly, 200) == 0, f"vehicle {k}: fly ends with exit status 0")
         check(interrupt(sim) == 0, "sim, interrupted, ends with exit status 0: nothing was hit")
 
-        for k in range(len(ways)):
+        for k in range(len(flights)):
             flown = arena.read(f"fly{k}.json")
             check(flown["outcome"] == "reached", f"vehicle {k}: {flown['outcome']} after {flown['flight_time_s']:.1f} s")
             events = [(record["name"], record["detail"]) for record in arena.log(f"fly{k}.jsonl", "event")]
             heard = sum(name == "team_vehicle" for name, _ in events)
-            check(heard >= len(ways) - 1, f"vehicle {k} heard {heard} others")
+            check(heard >= len(flights) - 1, f"vehicle {k} heard {heard} others")
             # Before it is ready it may not know its origin yet.
             ready = events.index(("phase", "climbing"))
             odd = {name for name, _ in events[ready:] if name.startswith("team_")} - {"team_vehicle", "team_lost"}
