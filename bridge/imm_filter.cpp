@@ -10,14 +10,14 @@ namespace {
 
 using Matrix3 = Eigen::Matrix3d;
 
-constexpr double kSteadyNoise = 0.02;      // m²/s³, of the steady model's acceleration
-constexpr double kTurningNoise = 12.0;     // m²/s⁵, of the turning model's jerk
-constexpr double kTurningSpread = 2.0;     // m/s², of the acceleration that a turn may begin with
-constexpr double kSojourn = 1.5;           // s, that an obstacle stays with a model on average
-constexpr double kGate = 45.0;             // squared Mahalanobis distance that noise has once in ten million
+constexpr double kSteadyNoise = 0.02;       // m²/s³, of the steady model's acceleration
+constexpr double kTurningNoise = 12.0;      // m²/s⁵, of the turning model's jerk
+constexpr double kTurningSpread = 2.0;      // m/s², of the acceleration that a turn may begin with
+constexpr double kSojourn = 1.5;            // s, that an obstacle stays with a model on average
+constexpr double kGate = 45.0;              // squared Mahalanobis distance that noise has once in ten million
 constexpr double kLeastProbability = 0.02;  // of a model
-constexpr double kLeastSigma = 0.01;       // m, m/s
-constexpr double kLongest = 1.0;           // s, between measurements, after which the estimate begins anew
+constexpr double kLeastSigma = 0.01;        // m, m/s
+constexpr double kLongest = 1.0;            // s, between measurements, after which the estimate begins anew
 
 Matrix3 transition(double dt, bool turning) {
   Matrix3 f = Matrix3::Identity();

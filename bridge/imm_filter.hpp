@@ -10,9 +10,9 @@
 namespace jink::bridge {
 
 /// An interacting multiple model estimator (Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and
-/// Navigation", 2001, section 11.6.6) of two models: one that flies nearly straight, and one whose acceleration wanders.
-/// The axes are independent and measured alike, so they share their covariances. What is so far off both models that
-/// noise cannot explain it, as after a bounce, begins anew from the measurement. Not thread-safe.
+/// Navigation", 2001, section 11.6.6) of two models: one that flies nearly straight, and one whose acceleration
+/// wanders. The axes are independent and measured alike, so they share their covariances. What is so far off both
+/// models that noise cannot explain it, as after a bounce, begins anew from the measurement. Not thread-safe.
 class ImmFilter {
  public:
   /// Takes in a measurement, `dt` seconds after the one before, with standard deviations per axis. `measured` gives

@@ -11,22 +11,22 @@ namespace {
 
 using planner::Vec3;
 
-constexpr double kSpacing = 0.05;          // s, between samples at first
-constexpr double kFitPeriod = 0.25;        // s
-constexpr double kPatience = 4.0;          // fit periods, between fits where there is little to learn
-constexpr double kShortest = 0.4;          // s, of history for a first fit
-constexpr double kPlainMisfit = 0.1;       // m in kLead seconds, with which plain prediction does
-constexpr double kProven = 0.25;           // m in kLead seconds, with which a fit has proved right
-constexpr double kBetter = 0.6;            // times plain prediction's misfit, that its own may be
-constexpr double kSigmas = 3.0;            // of the estimate that a misfit may be by noise
-constexpr double kTrust = 0.7;             // s, of plain prediction's acceleration
-constexpr double kExact = 0.01;            // m, m/s: sigmas below are taken for this
-constexpr double kBeyond = 0.1;            // m, that noise may put a track behind a bound
-constexpr double kTurnSpeed = 0.3;         // m/s, below which a turn is no bounce
-constexpr std::size_t kNoisyWindow = 5;    // samples on either side of a turn
-constexpr double kDoubt = 0.1;             // m/s, that a forecast is worse by than its measure
-constexpr double kAhead = 6.0;             // s, in which a turn is of interest
-constexpr double kTurnPause = 0.3;         // s, between two turns of a track
+constexpr double kSpacing = 0.05;        // s, between samples at first
+constexpr double kFitPeriod = 0.25;      // s
+constexpr double kPatience = 4.0;        // fit periods, between fits where there is little to learn
+constexpr double kShortest = 0.4;        // s, of history for a first fit
+constexpr double kPlainMisfit = 0.1;     // m in kLead seconds, with which plain prediction does
+constexpr double kProven = 0.25;         // m in kLead seconds, with which a fit has proved right
+constexpr double kBetter = 0.6;          // times plain prediction's misfit, that its own may be
+constexpr double kSigmas = 3.0;          // of the estimate that a misfit may be by noise
+constexpr double kTrust = 0.7;           // s, of plain prediction's acceleration
+constexpr double kExact = 0.01;          // m, m/s: sigmas below are taken for this
+constexpr double kBeyond = 0.1;          // m, that noise may put a track behind a bound
+constexpr double kTurnSpeed = 0.3;       // m/s, below which a turn is no bounce
+constexpr std::size_t kNoisyWindow = 5;  // samples on either side of a turn
+constexpr double kDoubt = 0.1;           // m/s, that a forecast is worse by than its measure
+constexpr double kAhead = 6.0;           // s, in which a turn is of interest
+constexpr double kTurnPause = 0.3;       // s, between two turns of a track
 
 double along(double x, bool upper) {
   return upper ? x : -x;
@@ -82,8 +82,8 @@ void LearnedTrack::remember(const MotionSample& sample) {
   samples_.push_back(sample);
 }
 
-void LearnedTrack::observe(double t, const planner::Track& measured, const planner::Track& estimate,
-                           std::uint64_t name, LearnedRoom& room) {
+void LearnedTrack::observe(double t, const planner::Track& measured, const planner::Track& estimate, std::uint64_t name,
+                           LearnedRoom& room) {
   remember({t, measured.position, measured.velocity});
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
@@ -151,8 +151,8 @@ void LearnedTrack::judge(double t, const planner::Track& estimate) {
     const double lead = t - trial.begun;
     trial.noise = std::max(trial.noise, noise);
     trial.misfit = std::max(trial.misfit, (trial.motion.position(lead) - estimate.position).norm());
-    trial.plain_misfit = std::max(
-        trial.plain_misfit, (planner::predict_position(trial.plain, lead, kTrust) - estimate.position).norm());
+    trial.plain_misfit =
+        std::max(trial.plain_misfit, (planner::predict_position(trial.plain, lead, kTrust) - estimate.position).norm());
   }
   while (!trials_.empty() && t - trials_.front().begun >= kLead) {
     const Trial& trial = trials_.front();
@@ -180,7 +180,7 @@ void LearnedTrack::fit(double t, const planner::Track& measured, const planner::
   if (samples_.empty() || samples_.back().t - samples_.front().t < kShortest) return;
   const double guess = proven_ ? frequency_ : 0.0;
   const auto found = fit_harmonics(samples_, std::max(kExact, measured.position_sigma),
-                                 std::max(kExact, measured.velocity_sigma), guess);
+                                   std::max(kExact, measured.velocity_sigma), guess);
   if (!found) return;
   frequency_ = found->motion.frequency;
   trials_.push_back({t, found->motion.later(t - samples_.back().t), estimate});

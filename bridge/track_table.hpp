@@ -61,12 +61,12 @@ class TrackTable {
   /// Writers that watch and whose newest believed message is no older than `timeout_s`.
   [[nodiscard]] int live_writers(double now, double timeout_s) const;
 
-  static constexpr std::size_t kMost = 20000;    ///< living tracks
+  static constexpr std::size_t kMost = 20000;       ///< living tracks
   static constexpr std::size_t kMostLearned = 400;  ///< tracks whose ways are learned at a time
-  static constexpr double kLearned = 40.0;       ///< m, from the vehicle's place, of these
-  static constexpr int kFits = 8;                ///< for a message, at most
-  static constexpr double kSelfWay = 1.0;        ///< m
-  static constexpr double kForgetWriter = 60.0;  ///< s of silence, after which a writer is taken for ended
+  static constexpr double kLearned = 40.0;          ///< m, from the vehicle's place, of these
+  static constexpr int kFits = 8;                   ///< for a message, at most
+  static constexpr double kSelfWay = 1.0;           ///< m
+  static constexpr double kForgetWriter = 60.0;     ///< s of silence, after which a writer is taken for ended
 
  private:
   struct Entry {

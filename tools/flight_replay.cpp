@@ -118,8 +118,8 @@ bridge::Forecast forecast_of(const Json& item, std::size_t tracks) {
   forecast.replaces = flag_of(item, "replaces");
   if (item.contains("bounces")) {
     const auto x = exact_numbers<12>(member(item, "bounces"), "bounces");
-    forecast.motion = bridge::BouncingMotion{
-        {x[0], x[1], x[2]}, {x[3], x[4], x[5]}, {{x[6], x[7], x[8]}, {x[9], x[10], x[11]}}};
+    forecast.motion =
+        bridge::BouncingMotion{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}, {{x[6], x[7], x[8]}, {x[9], x[10], x[11]}}};
   } else {
     constexpr std::size_t kTerms = bridge::HarmonicMotion::kTerms;
     const auto x = exact_numbers<1 + 3 * kTerms>(member(item, "swings"), "swings");
