@@ -16,6 +16,7 @@ constexpr double kArrival = 0.3;           // m, to the last waypoint
 constexpr double kArrivalSpeed = 0.5;      // m/s
 constexpr double kPassing = 0.7;           // m, to a waypoint on the way
 constexpr double kTakeoffTolerance = 0.3;  // m
+constexpr double kInset = 0.1;             // of the flight volume, at most, that paths keep away from its bounds
 constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
@@ -173,11 +174,15 @@ void Companion::planner_failed(double now, const std::exception& failure) {
   supervisor_.stop(now, Outcome::kAborted, reason);
 }
 
-planner::Box Companion::volume(const Vec3& start) const {
+planner::Box Companion::volume(const Vec3& start, const Vec3& target) const {
   planner::Box box = flight_volume(mission_);
-  // Where the vehicle is already, a path may begin.
-  box.min = box.min.cwiseMin(start);
-  box.max = box.max.cwiseMax(start);
+  // The vehicle is off its path by the margin, at times.
+  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(margin());
+  box.min += inset;
+  box.max -= inset;
+  // Where the vehicle is already, a path may begin, and it may end where it is sent.
+  box.min = box.min.cwiseMin(start).cwiseMin(target);
+  box.max = box.max.cwiseMax(start).cwiseMax(target);
   return box;
 }
 
@@ -200,7 +205,7 @@ void Companion::start_plan(double now) {
   job.start = now + std::max(parts_.planner.latency(), companion.commitment);
   job.newest_track = table_.newest_message();
   job.estimate_shift = estimate_shift_;
-  job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust);
+  job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (team_) job.paths = team_->paths(now, job.start);
 
   const planner::TimedPoint reference = stream_.reference(job.start);
@@ -215,7 +220,7 @@ void Companion::start_plan(double now) {
   announced_lost_ = lost;
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
-  request.volume = volume(request.position);
+  request.volume = volume(request.position, request.target);
   request.margin = margin();
   summary_.largest_margin = std::max(summary_.largest_margin, request.margin);
   request.track_acceleration = settings_.horizon.track_acceleration;

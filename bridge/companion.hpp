@@ -112,7 +112,7 @@ class Companion {
   void next_waypoint(double now);
   [[nodiscard]] FlightPicture picture(double now);
   [[nodiscard]] double heading(double now);
-  [[nodiscard]] planner::Box volume(const Vec3& start) const;
+  [[nodiscard]] planner::Box volume(const Vec3& start, const Vec3& target) const;
   [[nodiscard]] double margin() const;
   void announce_tracks(double now);
   void announce_vehicle(double now);

@@ -7,6 +7,18 @@
 
 namespace jink::bridge {
 
+Obstacles set_obstacles(PlanJob& job, const planner::HorizonSettings& settings) {
+  Obstacles obstacles = obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+  job.request.tracks = obstacles.tracks;
+  job.request.paths = obstacles.paths;
+  return obstacles;
+}
+
+void forget_obstacles(PlanJob& job) {
+  job.request.tracks = {};
+  job.request.paths = {};
+}
+
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock, Wake* done)
     : settings_(settings),
       clock_(clock),
@@ -56,14 +68,14 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     }
     try {
       const double begun = clock_.now();
-      result.job.request.tracks = result.job.tracks;
-      result.job.request.paths = result.job.paths;
+      const Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::Budget budget{
           settings_.horizon.generations,
           std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(deadline)};
       result.plan =
           planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+      forget_obstacles(result.job);
       result.ms = 1e3 * (clock_.now() - begun);
       const std::scoped_lock lock(mutex_);
       result_ = std::move(result);
@@ -82,11 +94,11 @@ void VirtualPlanner::start(PlanJob job) {
   assert(!result_);
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
-  result.job.request.tracks = result.job.tracks;
-  result.job.request.paths = result.job.paths;
+  const Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
   const planner::Budget budget{settings_.horizon.generations, planner::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+  forget_obstacles(result.job);
   result.ms = 1e3 * latency_;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bridge/clock.hpp"
+#include "bridge/forecast.hpp"
 #include "bridge/wake.hpp"
 #include "planner/horizon_planner.hpp"
 
@@ -18,8 +19,9 @@ namespace jink::bridge {
 
 /// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
 struct PlanJob {
-  planner::PathRequest request;  ///< `tracks` and `paths` are set by the task to the job's own
+  planner::PathRequest request;  ///< `tracks` and `paths` are set by the task to what follows from the below
   std::vector<planner::Track> tracks;
+  std::vector<Forecast> forecasts;        ///< of some of the tracks
   std::vector<planner::KnownPath> paths;  ///< of the team's other vehicles
   planner::TimedPath previous;            ///< times from `start` on
   std::uint64_t number = 0;
@@ -35,6 +37,10 @@ struct PlanResult {
   double ms = 0.0;      ///< spent planning: wall time, or the configured latency in virtual time
   bool missed = false;  ///< it came after its own start
 };
+
+/// What the job's plan is to avoid up to that planner's horizon. The request refers to it, until forget_obstacles().
+[[nodiscard]] Obstacles set_obstacles(PlanJob& job, const planner::HorizonSettings& settings);
+void forget_obstacles(PlanJob& job);
 
 /// One job at a time.
 class PlannerTask {

@@ -94,19 +94,67 @@ void TrackTable::ingest(const TrackMessage& message) {
     }
     Entry& entry = known->second;
     if (entry.seen > 0.0 && measured < entry.measured) continue;  // overtaken on the way
-    entry.track = track;
-    entry.measured = measured;
+    take(entry, track, measured);
     entry.seen = message.received;
   }
+  learn(message, measured);
+}
+
+void TrackTable::take(Entry& entry, const planner::Track& measured, double t) {
+  entry.track = measured;
+  if (measured.position_sigma > 0.0 || measured.velocity_sigma > 0.0) {
+    if (!entry.filter) entry.filter = std::make_unique<ImmFilter>();
+    entry.filter->update(t - entry.measured, measured);
+    entry.filter->apply(entry.track);
+  } else {
+    entry.filter.reset();
+  }
+  entry.measured = t;
+}
+
+// The ways of the tracks about the vehicle; the fits that have been due the longest first.
+void TrackTable::learn(const TrackMessage& message, double t) {
+  if (!vehicle_) return;
+  struct Due {
+    double since;
+    const planner::Track* measured;
+    Entry* entry;
+  };
+  std::vector<Due> due;
+  for (const planner::Track& measured : message.tracks) {
+    const auto known = entries_.find({message.writer, measured.id});
+    if (known == entries_.end() || known->second.measured != t) continue;
+    Entry& entry = known->second;
+    const bool near = (entry.track.position - *vehicle_).squaredNorm() < kLearned * kLearned;
+    if (!near && entry.learned) {
+      entry.learned.reset();
+      --learned_;
+    }
+    if (near && !entry.learned && learned_ < kMostLearned) {
+      entry.learned = std::make_unique<LearnedTrack>();
+      ++learned_;
+    }
+    if (!entry.learned) continue;
+    entry.learned->observe(t, measured, entry.track, measured.id, room_);
+    if (entry.learned->fit_due() <= t) due.push_back({entry.learned->fit_due(), &measured, &entry});
+  }
+  std::stable_sort(due.begin(), due.end(), [](const Due& a, const Due& b) { return a.since < b.since; });
+  if (due.size() > kFits) due.resize(kFits);
+  for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track);
 }
 
 void TrackTable::forget(double now) {
-  std::erase_if(entries_, [&](const auto& item) { return now - item.second.seen > coast_s_; });
+  std::erase_if(entries_, [&](const auto& item) {
+    const bool gone = now - item.second.seen > coast_s_;
+    if (gone && item.second.learned) --learned_;
+    return gone;
+  });
   std::erase_if(writers_, [&](const auto& item) { return now - item.second.received > kForgetWriter; });
 }
 
 void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocity, double radius) {
   own_tracks_ = 0;
+  vehicle_ = position;
   for (auto& [key, entry] : entries_) {
     const double age = std::max(0.0, now - entry.measured);
     const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
@@ -127,7 +175,7 @@ int TrackTable::live_writers(double now, double timeout_s) const {
   }));
 }
 
-std::vector<planner::Track> TrackTable::predict(double now, double trust) {
+std::vector<planner::Track> TrackTable::predict(double now, double trust, std::vector<Forecast>* forecasts) {
   forget(now);
   std::vector<planner::Track> tracks;
   tracks.reserve(entries_.size());
@@ -136,6 +184,12 @@ std::vector<planner::Track> TrackTable::predict(double now, double trust) {
     const double age = std::max(0.0, now - entry.measured);
     planner::Track track = planner::predict(entry.track, age, trust);
     track.age = age;
+    if (forecasts != nullptr && entry.learned) {
+      if (auto forecast = entry.learned->forecast(now, entry.measured, entry.track, room_)) {
+        forecast->track = tracks.size();
+        forecasts->push_back(std::move(*forecast));
+      }
+    }
     tracks.push_back(track);
   }
   if (writers_.size() > 1) make_ids_unique(tracks);

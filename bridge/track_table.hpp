@@ -5,10 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "bridge/forecast.hpp"
+#include "bridge/imm_filter.hpp"
+#include "bridge/motion_learner.hpp"
 #include "bridge/stamp_clock.hpp"
 #include "bridge/track_source.hpp"
 #include "planner/types.hpp"
@@ -46,8 +50,8 @@ class TrackTable {
 
   /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
   /// Their age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use
-  /// the same.
-  std::vector<planner::Track> predict(double now, double trust);
+  /// the same. `forecasts`, where given, gets what has been learned of their ways, valid at `now` too.
+  std::vector<planner::Track> predict(double now, double trust, std::vector<Forecast>* forecasts = nullptr);
 
   /// Reception of the newest message of any writer that watches; negative: none yet.
   [[nodiscard]] double newest_message() const { return newest_message_; }
@@ -57,14 +61,19 @@ class TrackTable {
   /// Writers that watch and whose newest believed message is no older than `timeout_s`.
   [[nodiscard]] int live_writers(double now, double timeout_s) const;
 
-  static constexpr std::size_t kMost = 20000;    ///< living tracks
-  static constexpr double kSelfWay = 1.0;        ///< m
-  static constexpr double kForgetWriter = 60.0;  ///< s of silence, after which a writer is taken for ended
+  static constexpr std::size_t kMost = 20000;       ///< living tracks
+  static constexpr std::size_t kMostLearned = 400;  ///< tracks whose ways are learned at a time
+  static constexpr double kLearned = 40.0;          ///< m, from the vehicle's place, of these
+  static constexpr int kFits = 8;                   ///< for a message, at most
+  static constexpr double kSelfWay = 1.0;           ///< m
+  static constexpr double kForgetWriter = 60.0;     ///< s of silence, after which a writer is taken for ended
 
  private:
   struct Entry {
-    planner::Track track;                    // as measured
+    planner::Track track;                    // as estimated from the measurements
     double measured = 0.0;                   // companion's clock
+    std::unique_ptr<ImmFilter> filter;       // of a track that is measured with noise
+    std::unique_ptr<LearnedTrack> learned;   // of a track that is near enough
     double seen = 0.0;                       // reception of the last message that held it
     std::optional<planner::Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
@@ -83,6 +92,8 @@ class TrackTable {
   std::optional<double> delay_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
   void remember(const TrackMessage& message);
+  void take(Entry& entry, const planner::Track& measured, double t);
+  void learn(const TrackMessage& message, double t);
   void forget(double now);
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
@@ -93,6 +104,9 @@ class TrackTable {
   int own_tracks_ = 0;
   std::map<std::uint64_t, Writer> writers_;
   std::map<Key, Entry> entries_;
+  std::optional<planner::Vec3> vehicle_;  // where it was last
+  LearnedRoom room_;
+  std::size_t learned_ = 0;  // tracks
 };
 
 }  // namespace jink::bridge

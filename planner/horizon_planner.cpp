@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "planner/manoeuvres.hpp"
@@ -119,18 +120,22 @@ Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous,
 Plan HorizonPlanner::repeat(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                             std::uint64_t number, const std::array<SearchExtent, 2>& searches, WorkerPool& pool) {
   const auto budget = [](const SearchExtent& s) { return Budget{s.schedule, Budget::Time::max(), s.generations}; };
-  const Budget first = budget(searches[0]);
+  // A plan that needed no search may need one with other settings or inputs.
+  const Budget first = searches[0].schedule > 0 ? budget(searches[0]) : Budget{settings_.generations};
   return make(request, previous, {seed, number}, {first, searches[1].schedule > 0 ? budget(searches[1]) : first}, pool);
 }
 
 Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous, const Random& random,
                           const std::array<Budget, 2>& budgets, WorkerPool& pool) {
   if (!finite(request)) return {};
+  problem_.prepare(request);
+  if (std::optional<Plan> settled = without_search(request, previous)) return *std::move(settled);
   Plan plan = search(problem_, request, previous, random, budgets[0], pool);
   std::array<SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
   if (!previous.empty()) keep_previous(request, previous, plan);
   const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
   if (!safe && settings_.emergency_share > settings_.acceleration_share) {
+    emergency_.prepare(request);
     Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
     searches[1] = {harder.schedule, harder.generations};
     plan.evaluations += harder.evaluations;
@@ -145,9 +150,34 @@ Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous,
   return plan;
 }
 
+// No path is shorter than undisturbed flight, none has less of the last objective than nothing: where undisturbed
+// flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
+// whatever a search found, it is kept.
+std::optional<Plan> HorizonPlanner::without_search(const PathRequest& request, const TimedPath& previous) const {
+  const std::vector<double> nothing(static_cast<std::size_t>(problem_.dimension()), 0.0);
+  Plan plan;
+  plan.path = problem_.motion(nothing);
+  const Cost ideal = problem_.cost_of(plan.path);
+  const auto settle = [&](Plan& settled) {
+    settled.verification = verify_until(settled.path, request, problem_.horizon());
+    if (!settled.verification.free() || settled.verification.min_clearance < request.margin) return false;
+    conclude(request, problem_.horizon(), settled);
+    return true;
+  };
+  if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
+  if (previous.empty()) return std::nullopt;
+  const Cost cost = problem_.cost_of(previous);
+  const double slack = settings_.keep_ratio;
+  if (cost.violation > 0.0 || cost.f[0] > ideal.f[0] * (1.0 + slack) || cost.f[2] > slack) return std::nullopt;
+  Plan kept;
+  kept.path = remainder(previous, 0.0);
+  kept.kept_previous = true;
+  if (!settle(kept)) return std::nullopt;
+  return kept;
+}
+
 Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const TimedPath& previous,
                             const Random& random, const Budget& budget, WorkerPool& pool) {
-  problem.prepare(request);
   initial_ = start_solutions(problem, request, previous, settings_);
   Budget affordable = budget;
   affordable.generations = affordable_generations(budget);

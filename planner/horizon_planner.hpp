@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "planner/budget.hpp"
@@ -42,7 +43,7 @@ class HorizonPlanner {
 
   /// Makes a plan again whose searches went as far as `searches` says (Plan::searches): the same bits, though the clock
   /// had a say in the first one. Where other settings or another request lead to a search that is not among them, it
-  /// goes as far as the first. Throws std::invalid_argument where the first has no generation.
+  /// goes as far as the first, or as the settings say where the first made none.
   Plan repeat(const PathRequest& request, const TimedPath& previous, std::uint64_t seed, std::uint64_t number,
               const std::array<SearchExtent, 2>& searches, WorkerPool& pool);
 
@@ -58,6 +59,7 @@ class HorizonPlanner {
   /// With one budget for each search.
   Plan make(const PathRequest& request, const TimedPath& previous, const Random& random,
             const std::array<Budget, 2>& budgets, WorkerPool& pool);
+  [[nodiscard]] std::optional<Plan> without_search(const PathRequest& request, const TimedPath& previous) const;
   Plan search(PathProblem& problem, const PathRequest& request, const TimedPath& previous, const Random& random,
               const Budget& budget, WorkerPool& pool);
   [[nodiscard]] int affordable_generations(const Budget& budget) const;

@@ -63,4 +63,32 @@ inline double exponential(double x) {
   return std::ldexp(series, static_cast<int>(power));
 }
 
+struct SineCosine {
+  double sine = 0.0, cosine = 1.0;
+};
+
+/// Of |x| <= 1e5 rad, within 4e-16 for small x and 1e-11 at that bound: Taylor's series about the nearest multiple of
+/// a right angle, whose value is taken in two parts.
+inline SineCosine sine_cosine(double x) {
+  assert(std::abs(x) <= 1e5);
+  constexpr double kHigh = 1.57079632673412561417e+00;  // 33 bits of pi / 2
+  constexpr double kLow = 6.07710050650619224932e-11;   // and the rest
+  const double turns = std::floor(x / (kHigh + kLow) + 0.5);
+  const double r = (x - turns * kHigh) - turns * kLow;  // |r| < 0.79
+  const double z = r * r;
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (int k = 16; k >= 2; k -= 2) {
+    sine = (1.0 + sine) * -z / (k * (k + 1.0));
+    cosine = (1.0 + cosine) * -z / (k * (k - 1.0));
+  }
+  sine = r + r * sine;
+  cosine += 1.0;
+  const int quadrant = static_cast<int>(turns - 4.0 * std::floor(0.25 * turns));
+  if (quadrant == 0) return {sine, cosine};
+  if (quadrant == 1) return {cosine, -sine};
+  if (quadrant == 2) return {-sine, -cosine};
+  return {-cosine, sine};
+}
+
 }  // namespace jink::planner

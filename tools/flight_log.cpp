@@ -196,6 +196,8 @@ void FlightLog::add_job(const bridge::PlanJob& job) {
     for (const planner::Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());
     line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age).close(']');
   }
+  line_.close(']').key("forecasts").open('[');
+  for (const bridge::Forecast& forecast : job.forecasts) add_forecast(forecast);
   line_.close(']').key("paths").open('[');
   for (const auto& [id, points, offset, r, off_path, position_sigma, velocity_sigma, age, until] : job.paths) {
     line_.open('{').key("id").integer(id).key("offset").exact(offset).key("radius").exact(r).key("margin").exact(
@@ -208,6 +210,24 @@ void FlightLog::add_job(const bridge::PlanJob& job) {
   line_.close(']');
   add_points("previous", job.previous);
   line_.close('}');
+}
+
+void FlightLog::add_forecast(const bridge::Forecast& forecast) {
+  const auto& [track, motion, radius, position_sigma, velocity_sigma, replaces] = forecast;
+  line_.open('{').key("track").integer(track).key("radius").exact(radius).key("position_sigma").exact(position_sigma);
+  line_.key("velocity_sigma").exact(velocity_sigma).key("replaces").flag(replaces);
+  if (const auto* bouncing = std::get_if<bridge::BouncingMotion>(&motion)) {
+    line_.key("bounces").open('[');
+    for (const planner::Vec3& part : {bouncing->begin, bouncing->velocity, bouncing->room.min, bouncing->room.max})
+      line_.exact(part.x()).exact(part.y()).exact(part.z());
+  } else {
+    const auto& swinging = std::get<bridge::HarmonicMotion>(motion);
+    line_.key("swings").open('[').exact(swinging.frequency);
+    for (Eigen::Index row = 0; row < swinging.terms.rows(); ++row) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) line_.exact(swinging.terms(row, axis));
+    }
+  }
+  line_.close(']').close('}');
 }
 
 void FlightLog::add_points(std::string_view key, const planner::TimedPath& path) {

@@ -44,7 +44,9 @@ struct FlightLogOptions {
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], margin, track_acceleration,
 /// acceleration_trust, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age],
-/// ...], paths: [{id, offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]},
+/// ...], forecasts: [{track, radius, position_sigma, velocity_sigma, replaces, bounces: [begin, velocity, min, max] or
+/// swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin,
+/// position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]},
 /// ...] of the team's other vehicles (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the
 /// previous path's times from there on. A number in it
 /// that is not finite is the text "inf", "-inf" or "nan". With the header's seed and parameters the plan can be made
@@ -105,6 +107,7 @@ class FlightLog final : public bridge::FlightObserver, public sim::TruthObserver
   void write_content(double t, const Truth& truth);
   JsonLine& begin(std::string_view type, double t);
   void add_job(const bridge::PlanJob& job);
+  void add_forecast(const bridge::Forecast& forecast);
   void add_points(std::string_view key, const planner::TimedPath& path);
 
   std::filesystem::path file_;

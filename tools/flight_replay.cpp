@@ -108,6 +108,32 @@ planner::KnownPath known_path_of(const Json& item) {
   return path;
 }
 
+bridge::Forecast forecast_of(const Json& item, std::size_t tracks) {
+  bridge::Forecast forecast;
+  forecast.track = count_of(item, "track");
+  if (forecast.track >= tracks) refuse("\"forecasts\" names a track that is not there");
+  forecast.radius = exact(member(item, "radius"), "radius");
+  forecast.position_sigma = exact(member(item, "position_sigma"), "position_sigma");
+  forecast.velocity_sigma = exact(member(item, "velocity_sigma"), "velocity_sigma");
+  forecast.replaces = flag_of(item, "replaces");
+  if (item.contains("bounces")) {
+    const auto x = exact_numbers<12>(member(item, "bounces"), "bounces");
+    forecast.motion =
+        bridge::BouncingMotion{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}, {{x[6], x[7], x[8]}, {x[9], x[10], x[11]}}};
+  } else {
+    constexpr std::size_t kTerms = bridge::HarmonicMotion::kTerms;
+    const auto x = exact_numbers<1 + 3 * kTerms>(member(item, "swings"), "swings");
+    bridge::HarmonicMotion motion;
+    motion.frequency = x[0];
+    for (std::size_t i = 0; i < 3 * kTerms; ++i)
+      motion.terms(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = x[i + 1];
+    forecast.motion = motion;
+  }
+  // What the planner is given must be a path.
+  if (!bridge::to_path(forecast, 1.0, 0.5).well_formed()) refuse("\"forecasts\" holds a motion that none can fly");
+  return forecast;
+}
+
 bridge::PlanJob job_of(const Json& record, const Json& from) {
   bridge::PlanJob job;
   planner::PathRequest& request = job.request;
@@ -128,6 +154,7 @@ bridge::PlanJob job_of(const Json& record, const Json& from) {
   if (!(request.margin >= 0.0) || !(request.track_acceleration >= 0.0) || !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
+  for (const Json& item : list_of(from, "forecasts")) job.forecasts.push_back(forecast_of(item, job.tracks.size()));
   for (const Json& item : list_of(from, "paths")) job.paths.push_back(known_path_of(item));
   job.previous = path_of(from, "previous");
   return job;
@@ -220,8 +247,7 @@ FlightComparison compare_plans(FlightRecording& recording, const ReplaySettings&
   FlightComparison result;
   while (std::optional<RecordedPlan> recorded = recording.next()) {
     bridge::PlanJob& job = recorded->job;
-    job.request.tracks = job.tracks;
-    job.request.paths = job.paths;
+    const bridge::Obstacles obstacles = bridge::set_obstacles(job, settings.settings.horizon);
     change(job.request, settings);
     // Searches go as far as the recorded ones did, unless their length is what was changed.
     const bool by_count = settings.settings.horizon.generations == settings.recorded.horizon.generations &&

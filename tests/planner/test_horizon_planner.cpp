@@ -101,10 +101,16 @@ TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
   const Plan plan = plan_once(r);
   EXPECT_EQ(plan.status, PlanStatus::kReaches);
   EXPECT_LT(path_length(plan.path), 20.0 * 1.01);
+  EXPECT_FALSE(plan.emergency);
+}
+
+TEST(HorizonPlanner, SearchesForAllItsGenerations) {
+  const std::vector<Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(tracks);
+  const Plan plan = plan_once(r);
   const HorizonSettings defaults;
   EXPECT_EQ(plan.evaluations, defaults.generations * defaults.population);
   EXPECT_EQ(plan.generations, defaults.generations);
-  EXPECT_FALSE(plan.emergency);
 }
 
 TEST(HorizonPlanner, SameBitsForAnyNumberOfThreads) {
@@ -219,8 +225,8 @@ TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
 }
 
 TEST(HorizonPlanner, ExpiredDeadlineStillGivesAPlan) {
-  const std::vector<Track> none;
-  const PathRequest r = request(none);
+  const std::vector<Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(tracks);
   WorkerPool pool(1);
   HorizonPlanner planner{HorizonSettings{}};
   const Plan plan = planner.plan(r, {}, 1, 0, {40, Budget::Time::min()}, pool);
@@ -260,7 +266,34 @@ TEST(HorizonPlanner, RepeatsTheSearchWithMoreAccelerationAsFarAsItWent) {
   expect_same_path(again.path, cut.path);
   EXPECT_EQ(again.status, cut.status);
   EXPECT_EQ(again.searches, cut.searches);
-  EXPECT_THROW(other.repeat(r, {}, 1, 0, {}, pool), std::invalid_argument);
+}
+
+// Undisturbed flight is the shortest: where it keeps every clearance there is nothing to search for.
+TEST(HorizonPlanner, SearchesNothingWhereUndisturbedFlightIsTheAnswer) {
+  const std::vector<Track> far{sphere(1, {8, 9, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(far);
+  WorkerPool pool(1);
+  HorizonPlanner planner{HorizonSettings{}};
+  const Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
+  EXPECT_EQ(plan.status, PlanStatus::kReaches);
+  EXPECT_EQ(plan.evaluations, 0);
+  EXPECT_EQ(plan.searches, (std::array<SearchExtent, 2>{}));
+  EXPECT_NEAR(path_length(plan.path), (r.target - r.position).norm(), 1e-6);
+  expect_same_path(planner.repeat(r, {}, 1, 0, plan.searches, pool).path, plan.path);
+}
+
+TEST(HorizonPlanner, KeepsWithoutASearchWhatNoSearchCouldReplace) {
+  const std::vector<Track> tracks{sphere(1, {10, 0.9, 2}, Vec3::Zero(), 0.4)};
+  const PathRequest r = request(tracks);
+  WorkerPool pool(1);
+  HorizonPlanner planner{HorizonSettings{}};
+  const Plan first = planner.plan(r, {}, 1, 0, {40}, pool);
+  ASSERT_GT(first.evaluations, 0);
+  ASSERT_EQ(first.status, PlanStatus::kReaches);
+  const Plan second = planner.plan(r, first.path, 1, 1, {40}, pool);
+  EXPECT_TRUE(second.kept_previous);
+  EXPECT_EQ(second.evaluations, 0);
+  expect_same_path(second.path, first.path);
 }
 
 Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {

@@ -41,6 +41,19 @@ TEST(ArcTangent, IsAccurateForTinyAngles) {
   for (double y = 1e-300; y < 1e-3; y *= 7.0) EXPECT_DOUBLE_EQ(arc_tangent2(y, 1.0), std::atan2(y, 1.0));
 }
 
+TEST(SineCosine, MatchesTheLibraryInEveryQuadrant) {
+  for (int i = -4000; i <= 4000; ++i) {
+    const double x = 0.0173 * i;
+    const auto [sine, cosine] = sine_cosine(x);
+    EXPECT_NEAR(sine, std::sin(x), 1e-14) << x;
+    EXPECT_NEAR(cosine, std::cos(x), 1e-14) << x;
+  }
+  for (const double x : {-9.9e4, 12345.678, 9.9e4}) {
+    EXPECT_NEAR(sine_cosine(x).sine, std::sin(x), 1e-11) << x;
+    EXPECT_NEAR(sine_cosine(x).cosine, std::cos(x), 1e-11) << x;
+  }
+}
+
 TEST(Logarithm, MatchesTheLibrary) {
   EXPECT_EQ(logarithm(1.0), 0.0);
   RandomStream random(2);

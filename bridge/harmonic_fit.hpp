@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The periodic motion that explains what was seen of a track best.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "bridge/forecast.hpp"
+#include "planner/types.hpp"
+
+namespace jink::bridge {
+
+/// A track as it was measured at time `t`.
+struct MotionSample {
+  double t = 0.0;
+  planner::Vec3 position = planner::Vec3::Zero();
+  planner::Vec3 velocity = planner::Vec3::Zero();
+};
+
+struct HarmonicFit {
+  HarmonicMotion motion;  ///< valid at the last sample's time
+  double misfit = 0.0;    ///< root mean square of the residuals in standard deviations
+};
+
+/// Weighted least squares of positions and velocities, with a weak wish for small amplitudes, over the frequencies
+/// from a twentieth to one hertz (`guess` 0), or near `guess` (rad/s). Nothing for fewer than kFewest samples.
+/// O(samples · frequencies), thread safe, no allocation.
+[[nodiscard]] std::optional<HarmonicFit> fit_harmonics(std::span<const MotionSample> samples, double position_sigma,
+                                                       double velocity_sigma, double guess = 0.0);
+
+inline constexpr std::size_t kFewestSamples = 8;
+
+}  // namespace jink::bridge
