@@ -32,7 +32,9 @@ struct FlightLogOptions {
 /// Takes records from the flight's loop and writes them, one line each, in a thread of its own. Numbers are printed so
 /// that they read back to the same bits.
 ///
-/// header {type, format, scenario|mission, seed, version, parameters, ...}; then, each with `type` and `t` (s):
+/// header {type, format, scenario|mission, seed, version, parameters, ...; of a scenario `shapes`: [{id, box: edges}|{id,
+/// vertices}, ...] of the obstacles that are no spheres, about the `p` of their `obstacles` records, and, where it has
+/// several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with `type` and `t` (s):
 /// truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has several
 /// vehicles, one truth {vehicle, p, v} for each, by number from 0;
 /// state {p, v, armed, mode}, tracks {tracks: [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]},
