@@ -28,8 +28,7 @@ std::vector<ReportSource> sources_of(const ReportOptions& options) {
   for (std::size_t i = 0; i < options.summaries.size(); ++i) {
     std::ifstream in(options.summaries[i]);
     nlohmann::json summary = nlohmann::json::parse(in, nullptr, false);
-    if (!in || !summary.is_object())
-      throw UsageError("--summary: '" + options.summaries[i] + "' is no summary object");
+    if (!in || !summary.is_object()) throw UsageError("--summary: '" + options.summaries[i] + "' is no summary object");
     sources[i].summary = std::move(summary);
   }
   return sources;

@@ -83,7 +83,7 @@ std::string mode_text(const sim::Autopilot& autopilot) {
 }
 
 std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter* writer) {
-  const bool vehicles = simulator.vehicle_count() > 0;
+  const int readers = writer != nullptr ? writer->readers() : -1;  // -1: no tracks are told
   std::string text;
   for (std::size_t k = 0; k < simulator.vehicle_count(); ++k) {
     const auto& motion = simulator.autopilot(k).true_motion();
@@ -92,6 +92,7 @@ std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter
     LiveStatus live;
     live.t = simulator.scenario_time();
     live.mode = mode_text(simulator.autopilot(k));
+    if (k == 0 && readers == 0) live.stale.emplace_back("no track reader");
     live.to_go = (motion.position - vehicle.target).norm();
     live.progress = whole > 0.0 ? std::clamp(1.0 - *live.to_go / whole, 0.0, 1.0) : 1.0;
     live.nearest = simulator.world().clearance(motion.position, live.t, vehicle.vehicle.radius);
@@ -99,10 +100,11 @@ std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter
     live.height = motion.position.z();
     text += (k == 0 ? "" : fmt::format("  [{}] ", k)) + live_text(live);
   }
-  if (!vehicles) text = live_text({.t = simulator.now()});
-  if (writer == nullptr) return text;
-  const int readers = writer->readers();
-  return text + (readers == 0 ? "  ! no track reader" : fmt::format("  {} track reader{}", readers, readers == 1 ? "" : "s"));
+  if (simulator.vehicle_count() > 0) return text;
+  LiveStatus live;
+  live.t = simulator.now();
+  if (readers == 0) live.stale.emplace_back("no track reader");
+  return live_text(live);
 }
 
 /// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second.
@@ -124,7 +126,6 @@ void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, Bac
                        const bridge::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
   LiveLine live(printer, kPlainPeriod);
-  (void)live.due(simulator.now());  // the first line after a period
   for (int step = 0; !interrupted(); ++step) {
     simulator.step();
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;

@@ -11,6 +11,7 @@ namespace jink::tools {
 std::string live_text(const LiveStatus& s) {
   std::string text = fmt::format("[{:6.1f} s]", s.t);
   if (!s.mode.empty()) text += " " + s.mode;
+  for (std::size_t i = 0; i < s.stale.size(); ++i) text += (i == 0 ? "  ! " : ", ") + s.stale[i];
   if (s.progress) text += fmt::format("  {:.0f} %", 100.0 * *s.progress);
   if (s.to_go) text += fmt::format("  {:.1f} m to go", *s.to_go);
   if (s.nearest && std::isfinite(*s.nearest)) text += fmt::format("  nearest {:.1f} m", *s.nearest);
@@ -19,14 +20,14 @@ std::string live_text(const LiveStatus& s) {
   if (s.speed) text += fmt::format("  {:.1f} m/s", *s.speed);
   if (s.height) text += fmt::format("  height {:.1f} m", *s.height);
   if (s.tracks) text += fmt::format("  {} track{}", *s.tracks, *s.tracks == 1 ? "" : "s");
-  for (std::size_t i = 0; i < s.stale.size(); ++i) text += (i == 0 ? "  ! " : ", ") + s.stale[i];
   return text;
 }
 
 bool LiveLine::due(double now) {
+  const bool first = !last_;
   if (last_ && now - *last_ < period_) return false;
   last_ = now;
-  return true;
+  return !first || printer_.terminal();
 }
 
 void LiveLine::show(const std::string& text) {

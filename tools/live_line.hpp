@@ -15,8 +15,8 @@ namespace jink::tools {
 
 /// What the line tells. What is not known is left out.
 struct LiveStatus {
-  double t = 0.0;    ///< s
-  std::string mode{};  ///< of the autopilot
+  double t = 0.0;                       ///< s
+  std::string mode{};                   ///< of the autopilot
   std::optional<double> progress{};     ///< share of the way to the last waypoint, 0 to 1
   std::optional<double> to_go{};        ///< m, to the last waypoint
   std::optional<double> speed{};        ///< m/s
@@ -27,7 +27,8 @@ struct LiveStatus {
   std::vector<std::string> stale{};     ///< inputs that are missing or too old, in words
 };
 
-/// One line without its end: "[  12.3 s] OFFBOARD  62 %  7.6 m to go  ...  ! tracks 1.4 s old".
+/// One line without its end: "[  12.3 s] offboard  ! tracks 1.4 s old  62 %  7.6 m to go  ...", what is stale near its
+/// beginning, so that a narrow terminal does not cut it off.
 [[nodiscard]] std::string live_text(const LiveStatus& status);
 
 /// Says when a line is due, and shows it: five a second on a terminal, cut to its width, else one in a few seconds.
@@ -37,7 +38,8 @@ class LiveLine {
   LiveLine(BackgroundPrinter& printer, double plain_period)
       : printer_(printer), period_(printer.terminal() ? kTerminalPeriod : plain_period) {}
 
-  /// Whether one is due at `now`, s of any clock that does not go back; if so the next one is a period later.
+  /// Whether one is due at `now`, s of any clock that does not go back; if so the next one is a period
+  /// later. Where there is no terminal the first one is due a period after the first call.
   [[nodiscard]] bool due(double now);
   void show(const std::string& text);
 
@@ -64,8 +66,8 @@ class LiveFlight final : public bridge::FlightObserver {
   [[nodiscard]] const LiveStatus& status() const { return status_; }
 
  private:
-  static constexpr double kPlainPeriod = 2.0;     // s
-  static constexpr double kOldHeartbeat = 2.5;    // s; it comes once a second
+  static constexpr double kPlainPeriod = 2.0;   // s
+  static constexpr double kOldHeartbeat = 2.5;  // s; it comes once a second
   void find_progress(const planner::Vec3& position);
   void find_stale(double t, const bridge::VehicleState& state);
 
@@ -76,8 +78,8 @@ class LiveFlight final : public bridge::FlightObserver {
   LiveStatus status_;
   planner::Vec3 position_ = planner::Vec3::Zero();
   std::optional<double> last_tracks_;
-  std::size_t waypoint_ = 0;      // the next one
-  double whole_ = 0.0;            // m, from where flying began by all waypoints
+  std::size_t waypoint_ = 0;  // the next one
+  double whole_ = 0.0;        // m, from where flying began by all waypoints
   bool flying_ = false;
 };
 

@@ -50,7 +50,8 @@ TEST(ConvexHull, OfACubeWithPointsInsideAndOnItsFaces) {
   const auto faces = convex_hull(points);
   EXPECT_NEAR(volume6(points, faces), 6.0, 1e-12);
   EXPECT_TRUE(closed(faces));
-  for (const Triangle& face : faces) EXPECT_EQ(std::count(face.begin(), face.end(), 0U), 0) << "the middle is no corner";
+  for (const Triangle& face : faces)
+    EXPECT_EQ(std::count(face.begin(), face.end(), 0U), 0) << "the middle is no corner";
 }
 
 TEST(ConvexHull, ContainsAllPointsAndIsClosed) {

@@ -124,7 +124,8 @@ std::string team() {
     const double t = 0.02 * i;
     const Triple a{2.0 * t, 0.0, 1.5}, b{20.0 - 2.0 * t, 1.5, 1.5};
     for (int k = 0; k < 2; ++k)
-      log += record({{"type", "truth"}, {"t", t}, {"vehicle", k}, {"p", k == 0 ? a : b}, {"v", {k == 0 ? 2 : -2, 0, 0}}});
+      log +=
+          record({{"type", "truth"}, {"t", t}, {"vehicle", k}, {"p", k == 0 ? a : b}, {"v", {k == 0 ? 2 : -2, 0, 0}}});
   }
   return log;
 }
@@ -208,7 +209,8 @@ TEST(FlightReport, MeasuresTheVehiclesOfATeamAgainstEachOther) {
 TEST(FlightReport, TellsWhatAPlanKnewOfTheOthers) {
   Json json = Json::parse(plan(2.0, 5.0, "progresses"));
   json["from"] = {{"start", 2.5}, {"acceleration_trust", 0.8}};
-  json["from"]["paths"] = {{{"id", 9}, {"offset", 100.0}, {"radius", 0.4}, {"points", {{100, 1, 2, 3}, {101, 2, 2, 3}}}}};
+  json["from"]["paths"] = {
+      {{"id", 9}, {"offset", 100.0}, {"radius", 0.4}, {"points", {{100, 1, 2, 3}, {101, 2, 2, 3}}}}};
   const Json known = report_of(kHeader + record(json))["plans"][0];
   EXPECT_EQ(known["trust"], 0.8);
   EXPECT_EQ(known["known"][0]["path"], (Json{2.5, 1.0, 2.0, 3.0, 3.5, 2.0, 2.0, 3.0}));

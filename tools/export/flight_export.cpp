@@ -30,7 +30,8 @@ constexpr std::string_view kVehicle = "vehicle";
 
 // Those of the report.
 constexpr Color kFlown{0.0, 0.447, 0.698, 1.0}, kPlan{0.0, 0.62, 0.451, 1.0}, kBlocked{0.835, 0.369, 0.0, 1.0};
-constexpr Color kObstacle{0.851, 0.643, 0.255, 0.9}, kTrack{0.659, 0.278, 0.541, 0.35}, kAheadColor{0.659, 0.278, 0.541, 1.0};
+constexpr Color kObstacle{0.851, 0.643, 0.255, 0.9}, kTrack{0.659, 0.278, 0.541, 0.35},
+    kAheadColor{0.659, 0.278, 0.541, 1.0};
 constexpr Color kVolume{0.6, 0.65, 0.7, 0.8}, kOther{0.247, 0.608, 0.82, 1.0};
 
 Vec3 vector(const Triple& v) {
@@ -158,7 +159,8 @@ class FlightExport {
     lines.color = kVolume;
     lines.pairs = true;
     const auto corner = [&](unsigned i) {
-      return Vec3((i & 1U) != 0 ? max.x() : min.x(), (i & 2U) != 0 ? max.y() : min.y(), (i & 4U) != 0 ? max.z() : min.z());
+      return Vec3((i & 1U) != 0 ? max.x() : min.x(), (i & 2U) != 0 ? max.y() : min.y(),
+                  (i & 4U) != 0 ? max.z() : min.z());
     };
     for (unsigned i = 0; i < 8; ++i) {
       for (const unsigned k : {1U, 2U, 4U}) {

@@ -69,7 +69,7 @@ Json entity_schema() {
   line.update({{"points", points_schema()}, {"color", color}, {"colors", colors}, {"indices", indices}});
   const Json triangles{
       {"pose", pose}, {"points", points_schema()}, {"color", color}, {"colors", colors}, {"indices", indices}};
-  const Json text{{"pose", pose},   {"billboard", kFlag},        {"font_size", kNumber}, {"scale_invariant", kFlag},
+  const Json text{{"pose", pose},   {"billboard", kFlag}, {"font_size", kNumber}, {"scale_invariant", kFlag},
                   {"color", color}, {"text", kText}};
   Json properties{{"timestamp", time_schema("time")},
                   {"frame_id", kText},
@@ -87,16 +87,14 @@ Json entity_schema() {
 }
 
 Json scene_schema() {
-  const Json deletion{{"timestamp", time_schema("time")},
-                      {"type", values({{0, "MATCHING_ID"}, {1, "ALL"}})},
-                      {"id", kText}};
+  const Json deletion{
+      {"timestamp", time_schema("time")}, {"type", values({{0, "MATCHING_ID"}, {1, "ALL"}})}, {"id", kText}};
   return object({{"deletions", list(named("foxglove.SceneEntityDeletion", object(deletion)))},
                  {"entities", list(entity_schema())}});
 }
 
 Json log_schema() {
-  const Json levels =
-      values({{0, "UNKNOWN"}, {1, "DEBUG"}, {2, "INFO"}, {3, "WARNING"}, {4, "ERROR"}, {5, "FATAL"}});
+  const Json levels = values({{0, "UNKNOWN"}, {1, "DEBUG"}, {2, "INFO"}, {3, "WARNING"}, {4, "ERROR"}, {5, "FATAL"}});
   return object({{"timestamp", time_schema("time")},
                  {"level", levels},
                  {"message", kText},
@@ -232,7 +230,8 @@ std::string schema(std::string_view name) {
   return named(name, properties_of(name)).dump();
 }
 
-std::string scene_update(std::uint64_t time_ns, std::string_view frame, const std::vector<Entity>& entities, bool afresh) {
+std::string scene_update(std::uint64_t time_ns, std::string_view frame, const std::vector<Entity>& entities,
+                         bool afresh) {
   JsonLine line;
   line.open('{').key("deletions").open('[');
   if (afresh) {

@@ -65,10 +65,12 @@ struct Entity {
 // Messages: one JSON object each. Times are ns since the recording's epoch.
 
 /// `afresh`: all entities of the topic from before go.
-[[nodiscard]] std::string scene_update(std::uint64_t time_ns, std::string_view frame, const std::vector<Entity>& entities,
-                                       bool afresh);
-[[nodiscard]] std::string pose_in_frame(std::uint64_t time_ns, std::string_view frame, const Vec3& position, double yaw);
-[[nodiscard]] std::string poses_in_frame(std::uint64_t time_ns, std::string_view frame, std::span<const Vec3> positions);
+[[nodiscard]] std::string scene_update(std::uint64_t time_ns, std::string_view frame,
+                                       const std::vector<Entity>& entities, bool afresh);
+[[nodiscard]] std::string pose_in_frame(std::uint64_t time_ns, std::string_view frame, const Vec3& position,
+                                        double yaw);
+[[nodiscard]] std::string poses_in_frame(std::uint64_t time_ns, std::string_view frame,
+                                         std::span<const Vec3> positions);
 [[nodiscard]] std::string frame_transform(std::uint64_t time_ns, std::string_view parent, std::string_view child,
                                           const Vec3& translation);
 [[nodiscard]] std::string log(std::uint64_t time_ns, LogLevel level, std::string_view message, std::string_view name);

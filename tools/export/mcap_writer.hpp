@@ -58,8 +58,8 @@ class McapWriter {
 
   std::filesystem::path file_;
   std::ofstream out_;
-  std::uint64_t at_ = 0;  // bytes written
-  std::uint32_t crc_ = 0;  // of them
+  std::uint64_t at_ = 0;            // bytes written
+  std::uint32_t crc_ = 0;           // of them
   std::string schemas_, channels_;  // their records, again for the summary
   Id schema_count_ = 0, channel_count_ = 0;
   std::string chunk_;  // records of the one that is being filled

@@ -14,7 +14,7 @@
 namespace jink::tools {
 namespace {
 
-constexpr double kMillimetres = 25.4;  // of an inch
+constexpr double kMillimetres = 25.4;     // of an inch
 constexpr std::size_t kAfterHeader = 33;  // of a PNG: its signature and the chunk IHDR
 
 void check(cairo_status_t status) {

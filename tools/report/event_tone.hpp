@@ -16,8 +16,8 @@ enum class EventTone : std::uint8_t { kPlain, kGood, kWarn, kBad };
   static constexpr std::array<std::string_view, 5> kFailed{"collision", "timeout", "left_world", "start_blocked",
                                                            "aborted"};
   static constexpr std::array<std::string_view, 3> kBlocked{"blocked", "start_blocked", "invalid"};
-  static constexpr std::array<std::string_view, 7> kWarnings{"fault",          "hazard",         "refused", "send_failed",
-                                                             "reference_lost", "tracks_refused", "log_dropped"};
+  static constexpr std::array<std::string_view, 7> kWarnings{
+      "fault", "hazard", "refused", "send_failed", "reference_lost", "tracks_refused", "log_dropped"};
   const auto among = [](const auto& list, std::string_view text) {
     return std::find(list.begin(), list.end(), text) != list.end();
   };

@@ -28,7 +28,8 @@ std::string outcome_text(const nlohmann::json& data) {
     return derived.contains(key) ? &derived[key] : nullptr;
   };
   std::string text;
-  if (const auto* outcome = figure("outcome"); outcome != nullptr && outcome->is_string()) text = outcome->get<std::string>();
+  if (const auto* outcome = figure("outcome"); outcome != nullptr && outcome->is_string())
+    text = outcome->get<std::string>();
   const auto add = [&](const nlohmann::json* value, const char* format) {
     if (value == nullptr || !value->is_number()) return;
     std::array<char, 96> part{};
@@ -81,7 +82,8 @@ ReportResult write_figure(const ReportSource& source, const std::filesystem::pat
   canvas.text({kLeft, kTop + 6.5}, outcome_text(figures), {.size = 2.6, .color = "#45525f"});
   std::array<char, 64> shown{};
   std::snprintf(shown.data(), shown.size(), "shown as it was at %.2f s", flight.at);
-  canvas.text({kFigureWidth_mm - kRight, kTop + 1.5}, shown.data(), {.size = 2.6, .align = Align::kRight, .color = "#45525f"});
+  canvas.text({kFigureWidth_mm - kRight, kTop + 1.5}, shown.data(),
+              {.size = 2.6, .align = Align::kRight, .color = "#45525f"});
 
   draw_view(canvas, flight, scale, true, {kLeft, kTop + kTitle, width, above});
   draw_view(canvas, flight, scale, false, {kLeft, kTop + kTitle + above + kBetween, width, beside});

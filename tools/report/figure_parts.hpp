@@ -20,7 +20,9 @@ struct FigureFlight {
   std::vector<ClearanceSample> clearance{};
   bool true_clearance = false;
 
-  [[nodiscard]] const std::vector<MotionSample>& motion() const { return data.truth.empty() ? data.states : data.truth; }
+  [[nodiscard]] const std::vector<MotionSample>& motion() const {
+    return data.truth.empty() ? data.states : data.truth;
+  }
   /// The plan in use at the instant; null before the first.
   [[nodiscard]] const PlanRecord* plan() const;
 };
@@ -43,7 +45,8 @@ struct FigureScale {
 [[nodiscard]] FigureScale figure_scale(const FigureFlight& flight, double width, double height);
 /// The height in mm of the view from above, or from the side.
 [[nodiscard]] double view_height(const FigureScale& scale, bool from_above);
-void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& scale, bool from_above, const Frame& frame);
+void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& scale, bool from_above,
+               const Frame& frame);
 /// One row that says what is what.
 void draw_legend(Canvas& canvas, const FigureFlight& flight, const Spot& at, double width);
 

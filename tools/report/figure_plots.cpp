@@ -11,9 +11,9 @@
 namespace jink::tools {
 namespace {
 
-constexpr double kGap = 3.0;        // mm, between panels
-constexpr double kCeiling = 6.0;    // m, clearance above which nothing is to be seen
-constexpr double kMissing = 1.0;    // s without a sample, which the line leaves open
+constexpr double kGap = 3.0;         // mm, between panels
+constexpr double kCeiling = 6.0;     // m, clearance above which nothing is to be seen
+constexpr double kMissing = 1.0;     // s without a sample, which the line leaves open
 constexpr double kSheetLimit = 1e4;  // mm, beyond which nothing is drawn
 
 struct Curve {
@@ -41,7 +41,8 @@ struct Axes {
   }
 };
 
-Curve curve_of(const std::vector<MotionSample>& motion, const std::function<double(const MotionSample&)>& value, Pen pen) {
+Curve curve_of(const std::vector<MotionSample>& motion, const std::function<double(const MotionSample&)>& value,
+               Pen pen) {
   Curve curve{{}, std::move(pen)};
   for (const MotionSample& sample : motion) curve.samples.push_back({sample.t, value(sample)});
   return curve;
@@ -55,7 +56,8 @@ std::vector<Panel> panels_of(const FigureFlight& flight) {
   gap.curves.push_back({{}, own});
   for (const ClearanceSample& sample : flight.clearance) gap.curves[0].samples.push_back({sample.t, sample.distance});
   Panel fast{.title = "speed", .unit = "m/s"}, high{.title = "height", .unit = "m"};
-  for (const auto& [panel, value] : {std::pair<Panel*, std::function<double(const MotionSample&)>>{&fast, speed}, {&high, height}}) {
+  for (const auto& [panel, value] :
+       {std::pair<Panel*, std::function<double(const MotionSample&)>>{&fast, speed}, {&high, height}}) {
     panel->curves.push_back(curve_of(flight.data.setpoints, value, asked));
     panel->curves.push_back(curve_of(flight.motion(), value, own));
   }
@@ -115,7 +117,8 @@ void draw_plans(Canvas& canvas, const FlightData& flight, const Axes& axes) {
     const bool blocked = plan.status != "reaches" && plan.status != "progresses";
     const Pen none{.width = 0.0, .opacity = 0.0}, ring{.width = 0.25};
     if (blocked) {
-      const std::array<Spot, 4> diamond{{{at[0], at[1] - 1.0}, {at[0] + 1.0, at[1]}, {at[0], at[1] + 1.0}, {at[0] - 1.0, at[1]}}};
+      const std::array<Spot, 4> diamond{
+          {{at[0], at[1] - 1.0}, {at[0] + 1.0, at[1]}, {at[0], at[1] + 1.0}, {at[0] - 1.0, at[1]}}};
       canvas.polygon(diamond, FigureColors::kBlocked, 1.0, none);
     } else {
       canvas.circle(at, 0.4, FigureColors::kPlan, 1.0, none);
@@ -132,15 +135,19 @@ void draw_events(Canvas& canvas, const FlightData& flight, const Axes& axes, dou
   for (const EventRecord& event : events) {
     const EventTone tone = event_tone(event.name, event.detail);
     if (tone == EventTone::kPlain) continue;
-    const std::string_view color = tone == EventTone::kGood ? "#007a58" : tone == EventTone::kBad ? "#c03a00" : "#9a6400";
+    const std::string_view color = tone == EventTone::kGood  ? "#007a58"
+                                   : tone == EventTone::kBad ? "#c03a00"
+                                                             : "#9a6400";
     const double x = axes.x(event.t);
-    canvas.line(std::array<Spot, 2>{{{x, axes.frame.y - 1.0}, {x, bottom}}}, {.color = color, .width = 0.2, .opacity = 0.6});
+    canvas.line(std::array<Spot, 2>{{{x, axes.frame.y - 1.0}, {x, bottom}}},
+                {.color = color, .width = 0.2, .opacity = 0.6});
     const bool told = event.name == "fault" || event.name == "phase" || event.name == "plan_status";
     std::string text = told ? event.detail : event.name;
     text = text.substr(0, text.find_first_of(",;"));
     const TextStyle style{.size = 2.2, .color = color};
     const double width = canvas.text_width(text, style);
-    const double start = std::clamp(x - 0.5 * width, axes.frame.x, std::max(axes.frame.x, axes.frame.x + axes.frame.width - width));
+    const double start =
+        std::clamp(x - 0.5 * width, axes.frame.x, std::max(axes.frame.x, axes.frame.x + axes.frame.width - width));
     if (start < free || width > 0.5 * axes.frame.width) continue;
     canvas.text({start, axes.frame.y - 2.4}, text, style);
     free = start + width + 2.0;
@@ -173,7 +180,8 @@ Ticks ticks_of(double low, double high, double count) {
   Ticks ticks;
   ticks.digits = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 6);
   const double first = std::ceil(low / step - 1e-9);
-  for (int i = 0; i < kMost && (first + i) * step <= high + 1e-9 * step; ++i) ticks.values.push_back((first + i) * step);
+  for (int i = 0; i < kMost && (first + i) * step <= high + 1e-9 * step; ++i)
+    ticks.values.push_back((first + i) * step);
   return ticks;
 }
 
@@ -206,7 +214,8 @@ void draw_plots(Canvas& canvas, const FigureFlight& flight, const Frame& frame) 
     axes.frame.y += height + kGap;
   }
   const Ticks ticks = ticks_of(axes.first, axes.last, frame.width / 16.0);
-  for (const double t : ticks.values) canvas.text({axes.x(t), bottom + 2.2}, ticks.text(t), {.size = 2.3, .align = Align::kCentre, .color = "#45525f"});
+  for (const double t : ticks.values)
+    canvas.text({axes.x(t), bottom + 2.2}, ticks.text(t), {.size = 2.3, .align = Align::kCentre, .color = "#45525f"});
   canvas.text({frame.x + 0.5 * frame.width, bottom + 5.8}, "time, s", {.size = 2.5, .align = Align::kCentre});
 }
 

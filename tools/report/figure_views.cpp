@@ -9,10 +9,12 @@
 namespace jink::tools {
 namespace {
 
-constexpr double kPad = 2.0;        // m, around the flown way
-constexpr double kTrail = 2.0;      // s, of an obstacle's way before and after the instant
-constexpr double kAheadStep = 0.1;  // s
+constexpr double kPad = 2.0;         // m, before and behind the flown way
+constexpr double kBeside = 3.5;      // m, beside it
+constexpr double kTrail = 2.0;       // s, of an obstacle's way before and after the instant
+constexpr double kAheadStep = 0.1;   // s
 constexpr double kMostExtent = 1e5;  // m; nothing that flies a log's length goes further
+constexpr std::string_view kSetpoint = "#a3adb8";
 constexpr std::array<const char*, 3> kAxes{"east", "north", "up"};
 
 /// A view: from metres to the sheet.
@@ -40,8 +42,8 @@ planner::Vec3 vector(const Triple& v) {
 
 template <typename Sample>
 const Sample* newest(const std::vector<Sample>& samples, double t) {
-  const auto next =
-      std::upper_bound(samples.begin(), samples.end(), t + 1e-9, [](double time, const Sample& s) { return time < s.t; });
+  const auto next = std::upper_bound(samples.begin(), samples.end(), t + 1e-9,
+                                     [](double time, const Sample& s) { return time < s.t; });
   return next == samples.begin() ? nullptr : &*std::prev(next);
 }
 
@@ -103,7 +105,8 @@ void draw_trails(Canvas& canvas, const View& view, const FigureFlight& flight) {
     if (std::abs(frame.t - flight.at) > kTrail) continue;
     for (const Body& body : frame.bodies) trails[body.id].push_back(view.spot(body.position));
   }
-  for (const auto& [id, trail] : trails) canvas.line(trail, {.color = FigureColors::kObstacle, .width = 0.3, .opacity = 0.7});
+  for (const auto& [id, trail] : trails)
+    canvas.line(trail, {.color = FigureColors::kObstacle, .width = 0.3, .opacity = 0.7});
 }
 
 void draw_tracks(Canvas& canvas, const View& view, const FigureFlight& flight) {
@@ -119,7 +122,8 @@ void draw_tracks(Canvas& canvas, const View& view, const FigureFlight& flight) {
                                .radius = body.radius,
                                .age = body.age};
     std::vector<Spot> ahead;
-    for (double s = 0.0; s <= kTrail; s += kAheadStep) ahead.push_back(view.spot(triple(predict_position(track, s, trust))));
+    for (double s = 0.0; s <= kTrail; s += kAheadStep)
+      ahead.push_back(view.spot(triple(predict_position(track, s, trust))));
     canvas.line(ahead, pen);
     if (flight.data.obstacles.empty()) {  // all that is known of them
       const double radius = body.radius * view.scale.scale;
@@ -132,8 +136,16 @@ void draw_plan(Canvas& canvas, const View& view, const FigureFlight& flight) {
   const PlanRecord* plan = flight.plan();
   if (plan == nullptr) return;
   std::vector<Spot> spots;
-  for (const auto& [t, x, y, z] : plan->path) {
-    if (t >= flight.at) spots.push_back(view.spot({x, y, z}));
+  for (std::size_t i = 0; i < plan->path.size(); ++i) {
+    const auto& [t, x, y, z] = plan->path[i];
+    if (t < flight.at) continue;
+    if (spots.empty() && i > 0 && t > plan->path[i - 1][0]) {  // from where the plan is at the instant
+      const auto& before = plan->path[i - 1];
+      const double share = (flight.at - before[0]) / (t - before[0]);
+      spots.push_back(view.spot({before[1] + share * (x - before[1]), before[2] + share * (y - before[2]),
+                                 before[3] + share * (z - before[3])}));
+    }
+    spots.push_back(view.spot({x, y, z}));
   }
   const bool blocked = plan->status != "reaches" && plan->status != "progresses";
   Pen pen{.color = FigureColors::kPlan, .width = 0.9};
@@ -150,7 +162,8 @@ void draw_clock(Canvas& canvas, const View& view, const std::vector<MotionSample
     if (sample == nullptr) continue;
     const Spot spot = view.spot(sample->position);
     canvas.circle(spot, 0.55, "#ffffff", 1.0, {.color = FigureColors::kFlown, .width = 0.3});
-    if (view.from_above) canvas.text({spot[0], spot[1] - 2.2}, ticks.text(t) + " s", {.size = 2.0, .align = Align::kCentre, .halo = true});
+    if (view.from_above)
+      canvas.text({spot[0], spot[1] - 2.2}, ticks.text(t) + " s", {.size = 2.0, .align = Align::kCentre, .halo = true});
   }
 }
 
@@ -214,13 +227,14 @@ FigureScale figure_scale(const FigureFlight& flight, double width, double height
   for (const OtherVehicle& other : flight.data.others) {
     for (const MotionSample& sample : other.truth) include(sample.position);
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    s.low[k] -= k == 2 ? 0.5 : kPad;
-    s.high[k] += k == 2 ? 1.0 : kPad;
-  }
-  s.low[2] = std::min(s.low[2], 0.0);
   s.across = s.high[1] - s.low[1] > 1.3 * (s.high[0] - s.low[0]) ? 1 : 0;
   const std::size_t down = 1 - s.across;
+  s.low[s.across] -= kPad;
+  s.high[s.across] += kPad;
+  s.low[down] -= kBeside;
+  s.high[down] += kBeside;
+  s.low[2] = std::min(s.low[2] - 0.5, 0.0);
+  s.high[2] += 1.0;
   s.scale = std::min({width / (s.high[s.across] - s.low[s.across]), height / (s.high[down] - s.low[down]),
                       height / (s.high[2] - s.low[2])});
   const double spare = width / s.scale - (s.high[s.across] - s.low[s.across]);
@@ -234,7 +248,8 @@ double view_height(const FigureScale& scale, bool from_above) {
   return (scale.high[k] - scale.low[k]) * scale.scale;
 }
 
-void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& scale, bool from_above, const Frame& frame) {
+void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& scale, bool from_above,
+               const Frame& frame) {
   const View view{scale, from_above, frame};
   draw_axes(canvas, view);
   canvas.clip(frame);
@@ -243,7 +258,9 @@ void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& sc
     std::vector<Body> bodies = obstacles->bodies;  // from far to near
     const std::size_t depth = from_above ? 2 : 1 - scale.across;
     const double sign = !from_above && scale.across == 0 ? -1.0 : 1.0;
-    const auto farther = [&](const Body& a, const Body& b) { return sign * a.position[depth] < sign * b.position[depth]; };
+    const auto farther = [&](const Body& a, const Body& b) {
+      return sign * a.position[depth] < sign * b.position[depth];
+    };
     std::stable_sort(bodies.begin(), bodies.end(), farther);
     for (const Body& body : bodies) draw_obstacle(canvas, view, flight.data, body);
   }
@@ -278,17 +295,22 @@ void draw_legend(Canvas& canvas, const FigureFlight& flight, const Spot& at, dou
   const FlightData& data = flight.data;
   const PlanRecord* plan = flight.plan();
   const bool blocked = plan != nullptr && plan->status != "reaches" && plan->status != "progresses";
-  const std::array<Entry, 5> entries{{
+  const std::array<Entry, 6> entries{{
       {"flown", {.color = FigureColors::kFlown, .width = 0.6}, false, !flight.motion().empty()},
       {"other vehicles", {.color = FigureColors::kOther, .width = 0.4}, false, !data.others.empty()},
       {blocked ? "plan, blocked" : "plan",
        blocked ? Pen{.color = FigureColors::kBlocked, .width = 0.9, .dash = {2.0, 1.0}}
                : Pen{.color = FigureColors::kPlan, .width = 0.9},
        false, plan != nullptr},
-      {data.obstacles.empty() ? "obstacle, as tracked" : "obstacle, its way within 2 s",
-       {.color = FigureColors::kObstacle, .width = 0.3}, true, !data.obstacles.empty() || !data.tracks.empty()},
-      {"predicted from its track, 2 s", {.color = FigureColors::kTrack, .width = 0.35, .dash = {1.0, 0.7}}, false,
+      {data.obstacles.empty() ? "obstacle, as tracked" : "obstacle, its way",
+       {.color = FigureColors::kObstacle, .width = 0.3},
+       true,
+       !data.obstacles.empty() || !data.tracks.empty()},
+      {"prediction, 2 s",
+       {.color = FigureColors::kTrack, .width = 0.35, .dash = {1.0, 0.7}},
+       false,
        !data.tracks.empty()},
+      {"setpoint", {.color = kSetpoint, .width = 0.3}, false, !data.setpoints.empty()},
   }};
   double x = at[0];
   for (const Entry& entry : entries) {

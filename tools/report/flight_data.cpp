@@ -31,8 +31,8 @@ Body body_of(const Json& record, bool moving) {
 }
 
 // As config::load_scenario bounds them.
-constexpr double kLargest = 1e3;          // m, edge
-constexpr double kFarthest = 2e5;         // m, vertex from the centre
+constexpr double kLargest = 1e3;   // m, edge
+constexpr double kFarthest = 2e5;  // m, vertex from the centre
 constexpr std::size_t kMostVertices = 10000;
 constexpr std::size_t kMostVehicles = 100;
 

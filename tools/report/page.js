@@ -66,7 +66,7 @@ function setPlaying(on) {
   if (playing && now >= tLast) now = tFirst;
   $("play").textContent = playing ? "❚❚" : "▶";
   lastFrame = 0;
-  if (playing) requestAnimationFrame(playOn);
+  if (playing) requestAnimationFrame(playOn); else requestRedraw();
 }
 
 function playOn(stamp) {

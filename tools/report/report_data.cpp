@@ -105,12 +105,8 @@ Json path_json(const std::vector<std::array<double, 4>>& points) {
 Json plans_json(const std::vector<PlanRecord>& plans) {
   Json list = Json::array();
   for (const PlanRecord& plan : plans) {
-    Json item{{"t", seconds(plan.t)},
-              {"ms", centi(plan.ms)},
-              {"status", plan.status},
-              {"kept", plan.kept},
-              {"missed", plan.missed},
-              {"path", path_json(plan.path)}};
+    Json item{{"t", seconds(plan.t)}, {"ms", centi(plan.ms)},  {"status", plan.status},
+              {"kept", plan.kept},    {"missed", plan.missed}, {"path", path_json(plan.path)}};
     if (std::isfinite(plan.acceleration_trust)) item["trust"] = centi(plan.acceleration_trust);
     for (const KnownPathRecord& known : plan.known_paths) {
       item["known"].push_back(
@@ -193,8 +189,8 @@ void regard_vehicles(const FlightData& flight, std::size_t own, const MotionSamp
   for (std::size_t k = 0; k <= flight.others.size(); ++k) {
     if (k == own) continue;
     const std::vector<MotionSample>& truth = truth_of(flight, k);
-    const auto there = std::lower_bound(truth.begin(), truth.end(), sample.t,
-                                        [](const MotionSample& m, double t) { return m.t < t; });
+    const auto there =
+        std::lower_bound(truth.begin(), truth.end(), sample.t, [](const MotionSample& m, double t) { return m.t < t; });
     if (there == truth.end() || there->t != sample.t) continue;
     const double free =
         distance(there->position, sample.position) - vehicle_radius(flight, number_of(flight, k)).value_or(0.0);
