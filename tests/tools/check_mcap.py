@@ -117,7 +117,7 @@ def check_against_log(topics, log):
     check(True, "positions, paths, speeds and plan times are the log's own")
     logged = [(record["name"], record["detail"]) for record in by_type["event"]]
     told = [message["message"] for _, message, _ in topics["/events"]]
-    check(all((f"{n}: {d}" if d else n) in told for n, d in logged) and len(told) >= len(logged), "and so are the events")
+    check(len(told) >= len(logged) and all((f"{n}: {d}" if d else n) in told for n, d in logged), "so are the events")
 
 
 def check_scenes(topics, log, summary_of_flight):
@@ -140,8 +140,10 @@ def check_scenes(topics, log, summary_of_flight):
     check(len({e["spheres"][0]["pose"]["position"]["y"] for e in moved}) > 20, "the sphere moves as the log says")
     least = min(message["clearance"] for _, message, _ in topics["/clearance"])
     # The log samples what the judge knows in continuous time.
-    check(0.0 <= least - summary_of_flight["min_clearance"] < 0.05, f"least clearance {least:.3f} m, by the true shapes")
-    check(topics["/scene/tracks"][5][1]["entities"][0]["lines"][0]["points"][-1] is not None, "tracks have a prediction")
+    check(0.0 <= least - summary_of_flight["min_clearance"] < 0.05, f"least clearance {least:.3f} m, by true shapes")
+    ahead = topics["/scene/tracks"][5][1]["entities"][0]["lines"][0]["points"]
+    moved = ahead[-1]["y"] - ahead[0]["y"]
+    check(abs(moved + 2 * 0.5) < 0.01, f"the track of the mover is predicted 2 s ahead: {moved:.2f} m")
 
 
 def main(jink):
@@ -149,7 +151,8 @@ def main(jink):
         folder = pathlib.Path(name)
         (folder / "scenario.yaml").write_text(SCENARIO)
         subprocess.run([jink, "replay", folder / "scenario.yaml", "--log", folder / "flight.jsonl", "--json",
-                        folder / "flight.json", "--set", "horizon.generations=40"], check=True, stdout=subprocess.DEVNULL)
+                        folder / "flight.json", "--set", "horizon.generations=40"], check=True,
+                       stdout=subprocess.DEVNULL)
         with open(folder / "flight.jsonl") as lines:
             log = [json.loads(line) for line in lines]
         done = subprocess.run([jink, "export", folder / "flight.jsonl", "--mcap"], check=True, capture_output=True,
@@ -164,7 +167,8 @@ def main(jink):
         (folder / "bad.jsonl").write_text("hello\n")
         bad = subprocess.run([jink, "export", folder / "bad.jsonl", "--mcap", folder / "bad.mcap"], capture_output=True,
                              text=True, check=False)
-        check(bad.returncode == 2 and bad.stderr.count("\n") == 1 and "bad.jsonl:1:" in bad.stderr, "a bad log: one line")
+        check(bad.returncode == 2 and bad.stderr.count("\n") == 1, "a bad log: exit 2 and one line")
+        check("bad.jsonl:1:" in bad.stderr, "which names it")
         check(not (folder / "bad.mcap").exists(), "and no recording")
         full = subprocess.run([jink, "export", folder / "flight.jsonl", "--mcap", folder / "no" / "x.mcap"],
                               capture_output=True, text=True, check=False)

@@ -154,7 +154,8 @@ class Flight {
   }
 }
 
-const flights = JSON.parse(document.getElementById("flight-data").textContent).flights.map((raw, i) => new Flight(raw, i));
+const flights = JSON.parse(document.getElementById("flight-data").textContent).flights
+  .map((raw, i) => new Flight(raw, i));
 const several = flights.length > 1;
 const tFirst = Math.min(...flights.map((flight) => flight.t[0]));
 const tLast = Math.max(...flights.map((flight) => flight.t[1]));

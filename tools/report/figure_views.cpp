@@ -227,6 +227,9 @@ FigureScale figure_scale(const FigureFlight& flight, double width, double height
   for (const OtherVehicle& other : flight.data.others) {
     for (const MotionSample& sample : other.truth) include(sample.position);
   }
+  if (const PlanRecord* plan = flight.plan()) {
+    for (const auto& [t, x, y, z] : plan->path) include({x, y, z});
+  }
   s.across = s.high[1] - s.low[1] > 1.3 * (s.high[0] - s.low[0]) ? 1 : 0;
   const std::size_t down = 1 - s.across;
   s.low[s.across] -= kPad;

@@ -2,6 +2,7 @@
 #include "tools/report/flight_data.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tools/report/log_lines.hpp"
@@ -78,14 +79,16 @@ void add_inputs(PlanRecord& plan, const Json& record) {
   if (!from->contains("paths")) return;
   const double start = number_of(*from, "start");
   for (const Json& path : list_of(*from, "paths")) {
-    KnownPathRecord known{count_of(path, "id"), number_of(path, "radius"), {}};
-    const double offset = number_of(path, "offset");
+    KnownPathRecord known{count_of(path, "id"), exact(member(path, "radius"), "radius"), {}};
+    const double offset = exact(member(path, "offset"), "offset");
+    bool finite = std::isfinite(known.radius);
     for (const Json& item : list_of(path, "points")) {
-      auto point = numbers<4>(item, "points");
+      auto point = exact_numbers<4>(item, "points");
       point[0] += start - offset;
+      finite = finite && std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
       known.points.push_back(point);
     }
-    plan.known_paths.push_back(std::move(known));
+    if (finite) plan.known_paths.push_back(std::move(known));
   }
 }
 

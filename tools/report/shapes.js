@@ -16,7 +16,10 @@ function lighter(color, share) {
   return `rgb(${parts.map((c) => Math.round(c + Math.abs(share) * (goal - c))).join(",")})`;
 }
 
-/** {corners, faces [[i, ...]] counter-clockwise from outside, normals, edges [[i, j, face, face]], box?} about the centre. */
+/**
+ * About the centre: {corners, faces [[i, ...]] counter-clockwise from outside, normals, edges [[i, j, face, face]],
+ * box?}.
+ */
 function polyhedron(shape) {
   const solid = shape.box ? boxSolid(shape.box) : {corners: [], faces: []};
   if (!shape.box) {
@@ -57,7 +60,7 @@ function nearestOnTriangle(p, [a, b, c], normal) {
   return ends.reduce((best, q) => (length(p, q) < length(p, best) ? q : best));
 }
 
-/** Distance d from a point to a body's surface, and the surface's point q. Inside a hull d is 0, inside others negative. */
+/** Distance d to a body's surface, and the surface's point q. Inside a hull d is 0, inside others negative. */
 function toSurface(from, body, solid) {
   const p = minus(from, body.p);
   const apart = Math.hypot(...p);
@@ -68,7 +71,6 @@ function toSurface(from, body, solid) {
     const d = Math.hypot(...minus(p, q));
     return {d: d > 0 ? d : Math.max(...p.map((x, k) => Math.abs(x) - half[k])), q: plus(body.p, q)};
   }
-  if (apart > 4 * body.r + 10) return {d: apart - body.r, q: plus(body.p, times(p, body.r / apart))};  // far: near enough
   let best = null;
   let within = true;
   solid.faces.forEach((face, f) => {
@@ -156,8 +158,9 @@ function outline(points) {
 /** The shadow straight below, which tells where over the ground a body is. */
 function drawShadow(ctx, camera, p, radius, solid) {
   if (p[2] < 0) return;
-  const circle = Array.from({length: 21}, (_, i) => [radius * Math.cos(i * Math.PI / 10), radius * Math.sin(i * Math.PI / 10)]);
-  const ring = solid ? outline(solid.corners.map(([x, y]) => [x, y])) : circle;
+  const angles = Array.from({length: 20}, (_, i) => i * Math.PI / 10);
+  const circle = () => angles.map((a) => [radius * Math.cos(a), radius * Math.sin(a)]);
+  const ring = solid ? outline(solid.corners.map(([x, y]) => [x, y])) : circle();
   ctx.beginPath();
   for (const [x, y] of ring) {
     const s = camera.project([p[0] + x, p[1] + y, 0]);

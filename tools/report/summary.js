@@ -138,7 +138,8 @@ function warningsOf(flight) {
 }
 
 function showParameters() {
-  const keys = new Set(flights.flatMap((f) => Object.keys(f.header.parameters instanceof Object ? f.header.parameters : {})));
+  const parameters = flights.map((f) => (f.header.parameters instanceof Object ? f.header.parameters : {}));
+  const keys = new Set(parameters.flatMap(Object.keys));
   $("parameters").hidden = keys.size === 0;
   const text = (value) => (value === undefined ? "–" : typeof value === "string" ? value : JSON.stringify(value));
   const table = $("parameters").querySelector("table");
@@ -152,7 +153,7 @@ function showParameters() {
     table.append(head);
   }
   for (const key of keys) {
-    const values = flights.map((f) => text((f.header.parameters || {})[key]));
+    const values = parameters.map((p) => text(p[key]));
     const row = element("tr", "", values.some((v) => v !== values[0]) ? "differs" : "");
     row.append(element("td", key), ...values.map((v) => element("td", v)));
     table.append(row);
