@@ -9,7 +9,8 @@ function axisTicks(low, high, count) {
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((s) => s * power).find((s) => s >= raw - 1e-12);
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push(i * step);
+  const first = Math.ceil(low / step - 1e-9);
+  for (let i = 0; i < 200 && (first + i) * step <= high + 1e-9 * step; ++i) ticks.push((first + i) * step);
   return {ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
 }
 
@@ -37,6 +38,7 @@ function plotSeries() {
   const from = !first.clearance ? "" : first.clearance.from === "true" ? "true" : "from tracks";
   const to = flights.some((f) => f.vehicle.radius === null) ? "vehicle's centre to" : "to";
   const team = first.others.length ? "; thin: the others" : "";
+  const nearest = `${to} the nearest obstacle${first.others.length ? " or vehicle" : ""}`;
   const what = (first.vehicle.from === "truth" ? "true" : "estimate") +
                (first.setpoints.t.length ? "; grey: setpoint" : "");
   const who = several ? "" : what + team;
@@ -49,7 +51,7 @@ function plotSeries() {
   const least = flights.flatMap((f) => (f.clearance ? [{...f.clearance.min, flight: f}] : []));
   const plans = flights.flatMap((f) => f.plans.map((plan) => ({...plan, flight: f})));
   return [
-    {title: "clearance", note: `${to} the nearest obstacle${several || !from ? "" : ", " + from}${several ? "" : team}`,
+    {title: "clearance", note: several ? nearest : nearest + (from ? ", " + from : "") + team,
      unit: "m", lines: gaps, least, zero: true, ceiling: 6},
     {title: "speed", note: who, unit: "m/s", lines: motion((s) => s.speed), floor: 0},
     {title: "height", note: who, unit: "m", lines: motion(heights), floor: 0},

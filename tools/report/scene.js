@@ -1,6 +1,7 @@
 // The camera, and lines and labels in its view: a small perspective renderer on a 2D canvas. Whatever can hide
 // something else is collected with its depth and drawn from far to near.
 const kNear = 0.15;   // m, nearest depth that is drawn
+const kFarthest = 1e5;  // m, beyond which nothing need be in view
 const kFocal = 3.2;   // focal length over half the canvas height: a mild perspective
 
 class Camera {
@@ -107,7 +108,7 @@ function flightVolume(flight) {
 /** What must be in view at first: the paths, starts and targets, and the air around them. The ground below is drawn. */
 function sceneBounds() {
   const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
-  const include = (p) => p.forEach((x, k) => {
+  const include = (p) => p.map((x) => clamp(x, -kFarthest, kFarthest)).forEach((x, k) => {
     min[k] = Math.min(min[k], x);
     max[k] = Math.max(max[k], x);
   });
@@ -163,7 +164,7 @@ class Ground {
   constructor(bounds, world) {
     this.world = world;
     const extent = Math.max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
-    this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => extent / s <= 16) || 2000;
+    this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000].find((s) => extent / s <= 16) || 20000;
     this.min = [0, 1].map((k) => Math.floor(bounds.min[k] / this.step + 1e-9) * this.step);
     this.max = [0, 1].map((k) => Math.ceil(bounds.max[k] / this.step - 1e-9) * this.step);
     this.top = Math.ceil(bounds.max[2]);
