@@ -55,6 +55,7 @@ void LiveFlight::on_state(double t, const bridge::VehicleState& state) {
 }
 
 void LiveFlight::find_progress(const planner::Vec3& position) {
+  if (flown_) return;  // a landing leads away from the target
   double left = (mission_.waypoints[waypoint_] - position).norm();
   for (std::size_t i = waypoint_ + 1; i < mission_.waypoints.size(); ++i)
     left += (mission_.waypoints[i] - mission_.waypoints[i - 1]).norm();
@@ -98,7 +99,11 @@ void LiveFlight::on_plan(double, const bridge::PlanResult& result) {
 }
 
 void LiveFlight::on_event(double, std::string_view name, const std::string& detail) {
-  if (name == "phase") flying_ = flying_ || detail.starts_with("flying");
+  if (name == "phase") {
+    const bool flies = detail.starts_with("flying");
+    flown_ = flying_ && !flies;
+    flying_ = flying_ || flies;
+  }
   if (name == "waypoint" && waypoint_ + 1 < mission_.waypoints.size()) ++waypoint_;
 }
 

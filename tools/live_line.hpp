@@ -80,7 +80,8 @@ class LiveFlight final : public bridge::FlightObserver {
   std::optional<double> last_tracks_;
   std::size_t waypoint_ = 0;  // the next one
   double whole_ = 0.0;        // m, from where flying began by all waypoints
-  bool flying_ = false;
+  bool flying_ = false;       // it has begun
+  bool flown_ = false;        // and is over
 };
 
 }  // namespace jink::tools

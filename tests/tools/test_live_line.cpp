@@ -81,6 +81,9 @@ TEST_F(LiveFlightTest, MeasuresTheWayAlongTheWaypoints) {
   at(8.0, {10, 3, 2});
   EXPECT_NEAR(*live_.status().to_go, 2.0, 1e-12);
   EXPECT_NEAR(*live_.status().progress, 13.0 / 15.0, 1e-12);
+  live_.on_event(8.1, "phase", "landing");
+  at(12.0, {10, 3, 0});
+  EXPECT_NEAR(*live_.status().progress, 13.0 / 15.0, 1e-12) << "a landing does not lead away from the target";
 }
 
 TEST_F(LiveFlightTest, NamesEveryInputThatIsMissingOrOld) {
