@@ -19,6 +19,8 @@
 #include "config/mission.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
+#include "tools/live_line.hpp"
+#include "tools/report/report.hpp"
 #include "tools/summaries.hpp"
 
 namespace jink::tools {
@@ -28,44 +30,20 @@ struct FlyOptions {
   CommonOptions common;
   std::string mission;
   std::string log;
+  std::string report;
 };
 
-/// Says what happens: events as lines, progress as a live line on a terminal and a line every few seconds elsewhere.
+/// Events as lines.
 class Teller final : public bridge::FlightObserver {
  public:
-  Teller(const config::Mission& mission, BackgroundPrinter& printer) : mission_(mission), printer_(printer) {}
+  explicit Teller(BackgroundPrinter& printer) : printer_(printer) {}
 
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(fmt::format("[{:6.1f} s] {}{}{}", t, name, detail.empty() ? "" : ": ", detail));
   }
-  void on_tracks(double, const std::vector<planner::Track>& tracks) override {
-    tracks_ = tracks.size();
-    nearest_ = planner::kInfinity;
-    for (const planner::Track& track : tracks) {
-      nearest_ = std::min(nearest_, (track.position - position_).norm() - track.radius - mission_.vehicle.radius);
-    }
-  }
-  void on_plan(double, const bridge::PlanResult& result) override { plan_ms_ = result.ms; }
-  void on_state(double t, const bridge::VehicleState& state) override {
-    position_ = state.position;
-    const double period = printer_.terminal() ? 0.2 : 2.0;
-    if (state.position_stamp < 0.0 || t - last_ < period) return;
-    last_ = t;
-    const std::string text = fmt::format(
-        "[{:6.1f} s] {}  {:.1f} m to go  {:.1f} m/s  height {:.1f} m  {} tracks, nearest {}  plan {:.0f} ms", t,
-        bridge::to_string(state.mode), (mission_.waypoints.back() - state.position).norm(), state.velocity.norm(),
-        state.position.z(), tracks_, std::isfinite(nearest_) ? fmt::format("{:.1f} m", nearest_) : "-", plan_ms_);
-    printer_.terminal() ? printer_.live(text) : printer_.line(text);
-  }
 
  private:
-  const config::Mission& mission_;
   BackgroundPrinter& printer_;
-  planner::Vec3 position_ = planner::Vec3::Zero();
-  std::size_t tracks_ = 0;
-  double nearest_ = planner::kInfinity;
-  double plan_ms_ = 0.0;
-  double last_ = -1.0;
 };
 
 nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
@@ -160,14 +138,17 @@ int exit_code(const bridge::FlightSummary& flight) {
 
 int run(const FlyOptions& options) {
   const Printer printer(options.common.json == "-");
+  if (!options.report.empty() && options.log.empty())
+    throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Settings settings = options.common.settings();
   const config::Mission mission = config::load_mission(options.mission);
   catch_signals();
   const bridge::SteadyClock clock;
   bridge::Wake wake;
   std::optional<BackgroundPrinter> background(printer);
-  Teller teller(mission, *background);
-  std::vector<bridge::FlightObserver*> observers{&teller};
+  Teller teller(*background);
+  LiveFlight live(mission, settings.companion.stale_state, *background);
+  std::vector<bridge::FlightObserver*> observers{&teller, &live};
   std::unique_ptr<FlightLog> log;
   std::unique_ptr<bridge::MavsdkLink> link;
   if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
@@ -204,6 +185,11 @@ int run(const FlyOptions& options) {
     printer.line(describe_flight(summary));
   }
   if (log) log->close();
+  if (!options.report.empty()) {
+    const nlohmann::json plain = summary;
+    write_report(options.log, options.report, &plain);
+    printer.line("report: " + std::filesystem::absolute(options.report).string());
+  }
   return exit_code(flight);
 }
 
@@ -214,6 +200,7 @@ Subcommand add_fly(CLI::App& jink) {
   const auto options = std::make_shared<FlyOptions>();
   app->add_option("MISSION", options->mission, "mission file")->required();
   app->add_option("--log", options->log, "write a flight log (JSON Lines)");
+  app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log");
   options->common.add_to(*app);
   return {app, [options] { return run(*options); }};
 }

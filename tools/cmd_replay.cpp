@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
+#include "bridge/clock.hpp"
 #include "config/scenario.hpp"
 #include "sim/closed_loop.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
 #include "tools/flight_replay.hpp"
+#include "tools/live_line.hpp"
 #include "tools/report/report.hpp"
 #include "tools/summaries.hpp"
 
@@ -27,16 +30,16 @@ struct ReplayOptions {
   bool own_seed = false;  ///< --seed was given
 };
 
-/// The faults to the terminal as they begin and end.
+/// The faults as lines as they begin and end.
 class FaultPrinter final : public bridge::FlightObserver {
  public:
-  explicit FaultPrinter(const Printer& printer) : printer_(printer) {}
+  explicit FaultPrinter(BackgroundPrinter& printer) : printer_(printer) {}
   void on_event(double t, std::string_view name, const std::string& detail) override {
     if (name == "fault") printer_.line(fmt::format("t {:6.2f} s  fault: {}", t, detail));
   }
 
  private:
-  const Printer& printer_;
+  BackgroundPrinter& printer_;
 };
 
 int replay_scenario(const ReplayOptions& options) {
@@ -54,8 +57,12 @@ int replay_scenario(const ReplayOptions& options) {
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
-  FaultPrinter faults(printer);
-  loop.flight_observers.push_back(&faults);
+  std::optional<BackgroundPrinter> background(printer);
+  FaultPrinter faults(*background);
+  const config::Mission mission = sim::mission_of(scenario);
+  const bridge::SteadyClock pace;  // of the live line alone: the flight's time is virtual
+  LiveFlight live(mission, settings.companion.stale_state, *background, &pace);
+  loop.flight_observers = {&faults, &live};
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
     FlightLogOptions in_virtual_time;
@@ -67,6 +74,7 @@ int replay_scenario(const ReplayOptions& options) {
   }
   const sim::ClosedLoopResult result = sim::fly_closed_loop(scenario, settings, loop);
   if (log) log->close();
+  background.reset();
 
   const auto summary =
       flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);

@@ -2,6 +2,7 @@
 // jink sim: the headless simulator. A PX4-style autopilot on UDP, and the obstacles' tracks on DDS, in real time.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "sim/simulator.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
+#include "tools/live_line.hpp"
 #include "tools/sim_dds.hpp"
 #include "tools/summaries.hpp"
 
@@ -25,7 +27,6 @@ constexpr int kLastInstance = 9;  // PX4's
 constexpr int kTurnSteps = 5;     // of 4 ms: in lockstep a setpoint is waited for every 20 ms
 constexpr std::chrono::seconds kLongestWait{1};
 constexpr std::chrono::microseconds kPollPause{50};
-constexpr int kLiveSteps = 50;        // of 4 ms, between live lines
 constexpr double kPlainPeriod = 5.0;  // s, between lines where there is no terminal
 
 struct SimOptions {
@@ -51,7 +52,7 @@ double unix_now() {
 /// Events to the terminal and the log, the truth to the log.
 class Teller final : public sim::SimulatorObserver {
  public:
-  Teller(const Printer& printer, FlightLog* log) : printer_(printer), log_(log) {}
+  Teller(BackgroundPrinter& printer, FlightLog* log) : printer_(printer), log_(log) {}
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(detail);
     if (log_ != nullptr) log_->on_event(t, name, detail);
@@ -61,7 +62,7 @@ class Teller final : public sim::SimulatorObserver {
   }
 
  private:
-  const Printer& printer_;
+  BackgroundPrinter& printer_;
   FlightLog* log_;
 };
 
@@ -83,20 +84,28 @@ std::string mode_text(const sim::Autopilot& autopilot) {
 }
 
 std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter* writer) {
-  const int readers = writer != nullptr ? writer->readers() : 0;
-  const std::string tracks = fmt::format("{} track reader{}", readers, readers == 1 ? "" : "s");
-  if (simulator.vehicle_count() == 0) return fmt::format("t {:6.1f} s  {}", simulator.now(), tracks);
-  const double t = simulator.scenario_time();
-  std::string text = fmt::format("t {:6.1f} s", t);
+  const int readers = writer != nullptr ? writer->readers() : -1;  // -1: no tracks are told
+  std::string text;
   for (std::size_t k = 0; k < simulator.vehicle_count(); ++k) {
-    const Vec3& p = simulator.autopilot(k).true_motion().position;
+    const auto& motion = simulator.autopilot(k).true_motion();
     const config::ScenarioVehicle& vehicle = simulator.vehicle(k);
-    if (simulator.vehicle_count() > 1) text += fmt::format("  [{}]", k);
-    text += fmt::format("  {}  at ({:.1f}, {:.1f}, {:.1f})  {:.1f} m to target  clearance {:.2f} m",
-                        mode_text(simulator.autopilot(k)), p.x(), p.y(), p.z(), (p - vehicle.target).norm(),
-                        simulator.world().clearance(p, t, vehicle.vehicle.radius));
+    const double whole = (vehicle.target - vehicle.start).norm();
+    LiveStatus live;
+    live.t = simulator.scenario_time();
+    live.mode = mode_text(simulator.autopilot(k));
+    if (k == 0 && readers == 0) live.stale.emplace_back("no track reader");
+    live.to_go = (motion.position - vehicle.target).norm();
+    live.progress = whole > 0.0 ? std::clamp(1.0 - *live.to_go / whole, 0.0, 1.0) : 1.0;
+    live.nearest = simulator.world().clearance(motion.position, live.t, vehicle.vehicle.radius);
+    live.speed = motion.velocity.norm();
+    live.height = motion.position.z();
+    text += (k == 0 ? "" : fmt::format("  [{}] ", k)) + live_text(live);
   }
-  return text + "  " + tracks;
+  if (simulator.vehicle_count() > 0) return text;
+  LiveStatus live;
+  live.t = simulator.now();
+  if (readers == 0) live.stale.emplace_back("no track reader");
+  return live_text(live);
 }
 
 /// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second.
@@ -114,18 +123,14 @@ void wait_for_companions(sim::Simulator& simulator) {
 }
 
 /// Steps in real time (or `speed` times it; a late step is caught up) or in lockstep, until the end.
-void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, const Printer& printer,
+void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, BackgroundPrinter& printer,
                        const bridge::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
-  const bool live = printer.terminal();
-  const int period = live ? kLiveSteps : static_cast<int>(kPlainPeriod / sim::VehicleModel::kStep);
+  LiveLine live(printer, kPlainPeriod);
   for (int step = 0; !interrupted(); ++step) {
     simulator.step();
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;
-    if (step > 0 && step % period == 0) {
-      const std::string line = status(simulator, writer);
-      live ? printer.live(line) : printer.line(line);
-    }
+    if (live.due(simulator.now())) live.show(status(simulator, writer));
     if (options.lockstep) {
       if (step % kTurnSteps == kTurnSteps - 1) wait_for_companions(simulator);
       continue;
@@ -186,7 +191,7 @@ nlohmann::ordered_json summary_of(const sim::Simulator& simulator, const SimOpti
   return summary;
 }
 
-void introduce(const config::Scenario& scenario, const SimOptions& options, const Printer& printer) {
+void introduce(const config::Scenario& scenario, const SimOptions& options, BackgroundPrinter& printer) {
   printer.line(fmt::format(
       "scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
       options.no_tracks ? ", not told" : fmt::format(" as {} on DDS domain {}", bridge::kTracksTopic, options.domain),
@@ -217,7 +222,8 @@ int run(const SimOptions& options) {
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty())
     log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
-  Teller teller(printer, log.get());
+  std::optional<BackgroundPrinter> background(printer);
+  Teller teller(*background, log.get());
   std::unique_ptr<bridge::DdsTrackWriter> writer;  // none: somebody else tells of the obstacles
   if (!options.no_tracks) writer = std::make_unique<bridge::DdsTrackWriter>(options.domain);
   const auto publish = [&](const sim::TrackMessage& message, double now) {
@@ -237,8 +243,9 @@ int run(const SimOptions& options) {
     if (dds) dds->step(k, now, autopilot);
   };
   sim::Simulator simulator(scenario, choices, {publish, {&teller}, on_step});
-  introduce(scenario, options, printer);
-  run_until_the_end(simulator, options, printer, writer.get());
+  introduce(scenario, options, *background);
+  run_until_the_end(simulator, options, *background, writer.get());
+  background.reset();  // nothing is said by the simulator from here on
   if (log) log->close();
   if (options.no_vehicle) return kExitReached;
   const auto summary = summary_of(simulator, options);

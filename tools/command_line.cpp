@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/command_line.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,6 +61,7 @@ BackgroundPrinter::~BackgroundPrinter() {
 void BackgroundPrinter::put(std::string text, bool live) {
   {
     const std::scoped_lock lock(mutex_);
+    if (live && !queue_.empty() && queue_.back().live) queue_.pop_back();  // nobody will read what it replaces
     if (queue_.size() == kMost) {
       ++dropped_;
       return;
@@ -95,7 +97,11 @@ bool Printer::terminal() const {
 
 void Printer::live(const std::string& text) const {
   if (!terminal()) return;
-  std::fprintf(file_, "\r\033[K%s", text.c_str());
+  winsize size{};
+  const bool known = ioctl(fileno(file_), TIOCGWINSZ, &size) == 0 && size.ws_col > 1;  // NOLINT: the system's interface
+  // A line that wraps could not be rewritten.
+  const std::size_t room = known ? static_cast<std::size_t>(size.ws_col - 1) : text.size();
+  std::fprintf(file_, "\r\033[K%s", text.substr(0, room).c_str());
   std::fflush(file_);
   live_ = true;
 }

@@ -50,7 +50,7 @@ class Printer {
   explicit Printer(bool to_stderr) : file_(to_stderr ? stderr : stdout) {}
   void line(const std::string& text) const;
   [[nodiscard]] bool terminal() const;
-  /// Rewrites the present line of a terminal; nothing elsewhere.
+  /// Rewrites the present line of a terminal, cut to its width (text is ASCII); nothing elsewhere.
   void live(const std::string& text) const;
 
  private:
@@ -59,7 +59,8 @@ class Printer {
 };
 
 /// Hands lines to a printer in a thread of its own: a terminal that is stopped or a pipe that nobody reads must not
-/// hold up who says something. What does not fit the queue is left out and counted. The printer outlives it.
+/// hold up who says something. Of live lines in a row the newest is printed; what does not fit the queue is left out
+/// and counted. The printer outlives it.
 class BackgroundPrinter {
  public:
   explicit BackgroundPrinter(const Printer& printer);
@@ -109,5 +110,6 @@ Subcommand add_sim(CLI::App& jink);
 Subcommand add_fly(CLI::App& jink);
 Subcommand add_doctor(CLI::App& jink);
 Subcommand add_report(CLI::App& jink);
+Subcommand add_export(CLI::App& jink);
 
 }  // namespace jink::tools

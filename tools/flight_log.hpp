@@ -32,13 +32,14 @@ struct FlightLogOptions {
 /// Takes records from the flight's loop and writes them, one line each, in a thread of its own. Numbers are printed so
 /// that they read back to the same bits.
 ///
-/// header {type, format, scenario|mission, seed, version, parameters, ...}; then, each with `type` and `t` (s):
-/// truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has several
-/// vehicles, one truth {vehicle, p, v} for each, by number from 0;
-/// state {p, v, armed, mode}, tracks {tracks: [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]},
-/// plan {path: [[t, x, y, z], ...], ms, status, ..., from}, setpoint {p, v, a, yaw}, event {name, detail}.
-/// Vectors are [x, y, z], ENU, m. `t` of truth and obstacles is scenario time, of the others the companion's clock; in
-/// `replay` the two are one.
+/// header {type, format, scenario|mission, seed, version, parameters, ...; of a scenario `shapes`: [{id, box:
+/// edges}|{id, vertices}, ...] of the obstacles that are no spheres, about the `p` of their `obstacles` records, and,
+/// where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with `type` and
+/// `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has
+/// several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks {tracks:
+/// [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]}, plan {path: [[t, x, y, z], ...], ms, status, ...,
+/// from}, setpoint {p, v, a, yaw}, event {name, detail}. Vectors are [x, y, z], ENU, m. `t` of truth and obstacles is
+/// scenario time, of the others the companion's clock; in `replay` the two are one.
 ///
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,

@@ -1,20 +1,22 @@
 #!/usr/bin/env bash
 # Installs what jink builds with on Debian 12: packages by apt, Python packages into .venv. Quick when nothing is missing.
 # Called by tools/demo.sh, tools/test.sh and .ci/run; safe to run by hand. Not root: uses sudo and says so.
-#   tools/setup.sh [bench|fuzz]        what tools/bench.sh or tools/fuzz.sh needs too
+#   tools/setup.sh [test|bench|fuzz]        what tools/test.sh, tools/bench.sh or tools/fuzz.sh needs too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
   libeigen3-dev libyaml-cpp-dev libgtest-dev
-  libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev
+  libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev libcairo2-dev fonts-dejavu-core
   libfastrtps-dev libfastcdr-dev fastddsgen
   python3 python3-venv
   clang-format-14 clang-tidy-14
 )
 case "${1:-}" in
   "") ;;
+  # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
+  test) command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell) ;;
   bench) packages+=(libbenchmark-dev libpagmo-dev) ;;
   fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
   *) echo "setup: unknown group of packages: $1" >&2; exit 2 ;;

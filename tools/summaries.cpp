@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "planner/indicators.hpp"
+#include "sim/shapes.hpp"
+#include "sim/world.hpp"
 #include "tools/flight_log.hpp"
 
 namespace jink::tools {
@@ -21,6 +23,26 @@ Json percentiles_json(const std::vector<double>& values) {
 
 std::string number(const Json& value, const char* unit) {
   return value.is_number() ? fmt::format("{:.2f} {}", value.get<double>(), unit) : std::string("unknown");
+}
+
+/// The true shapes that are no spheres, about the centre that the log's `obstacles` records give.
+Json shapes_json(const config::Scenario& scenario) {
+  Json shapes = Json::array();
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    const config::Shape& shape = scenario.obstacles[i].shape;
+    Json entry{{"id", sim::World::id(static_cast<int>(i))}};
+    if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
+      entry["box"] = vector_json(box->edges);
+    } else if (const auto* hull = std::get_if<config::VertexShape>(&shape)) {
+      const planner::Vec3 center = sim::bounding_sphere(shape).center;
+      entry["vertices"] = Json::array();
+      for (const planner::Vec3& vertex : hull->vertices) entry["vertices"].push_back(vector_json(vertex - center));
+    } else {
+      continue;
+    }
+    shapes.push_back(std::move(entry));
+  }
+  return shapes;
 }
 
 }  // namespace
@@ -90,6 +112,16 @@ Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const
               {"world", nullptr}};
   if (scenario.world)
     header["world"] = {{"min", vector_json(scenario.world->min)}, {"max", vector_json(scenario.world->max)}};
+  if (Json shapes = shapes_json(scenario); !shapes.empty()) header["shapes"] = std::move(shapes);
+  if (!scenario.vehicles.empty()) {
+    header["vehicles"] = Json::array();
+    for (const config::ScenarioVehicle& vehicle : config::all_vehicles(scenario)) {
+      header["vehicles"].push_back({{"name", vehicle.vehicle_name},
+                                    {"radius", vehicle.vehicle.radius},
+                                    {"start", vector_json(vehicle.start)},
+                                    {"target", vector_json(vehicle.target)}});
+    }
+  }
   header["parameters"] = parameters_of(settings);
   return header;
 }

@@ -19,7 +19,8 @@ nlohmann::ordered_json flight_summary(const std::string& kind, const std::string
 /// A few lines for people.
 std::string describe_flight(const nlohmann::ordered_json& summary);
 
-/// What a log's header says of a scenario: name, seed, start, target, vehicle, world, parameters.
+/// What a log's header says of a scenario: name, seed, start, target, vehicle, world, parameters, and of obstacles
+/// that are no spheres the shapes, of several vehicles all.
 nlohmann::ordered_json scenario_header(const config::Scenario& scenario, std::uint64_t seed,
                                        const config::Settings& settings);
 

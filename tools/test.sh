@@ -4,7 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}; shift || true
+tools/setup.sh test
 tools/build.sh "$preset"
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
+if [ "$preset" = asan ]; then export LSAN_OPTIONS="suppressions=$PWD/tests/support/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"; fi
 # One more than cores: the system tests mostly wait.
 ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@"

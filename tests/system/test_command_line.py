@@ -46,6 +46,13 @@ BAD_USAGE = [
     (["replay", "no-such-log.jsonl"], ["no-such-log.jsonl"]),
     (["replay", "flight.jsonl", "--log", "again.jsonl"], ["--log", "jink report"]),
     (["report", "no-such-log.jsonl"], ["no-such-log.jsonl"]),
+    (["report", "a.jsonl", "b.jsonl"], ["--out", "several"]),
+    (["report", "a.jsonl", "b.jsonl", "--png", "x.png"], ["--png", "one flight"]),
+    (["report", "a.jsonl", "--at", "3"], ["--at", "--png"]),
+    (["report", "a.jsonl", "--summary", "x.json", "--summary", "y.json"], ["--summary", "2 summaries for 1"]),
+    (["export", "no-such-log.jsonl", "--mcap", "x.mcap"], ["no-such-log.jsonl"]),
+    (["export", "a.jsonl"], ["--mcap"]),
+    (["fly", CONFIG / "missions" / "sitl.yaml", "--report", "x.html"], ["--report", "--log"]),
 ]
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The flight report: what is kept, what is refused, and that nothing in a log gets out of its place in the page.
-// With JINK_REPORT_DIR set, TheTwoKindsOfLogs leaves its pages there for check_report.py to look at with a browser.
+// With JINK_REPORT_DIR set, TheKindsOfLogs leaves its pages there for check_report.py to look at with a browser.
 #include "tools/report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ using Json = nlohmann::json;
 
 constexpr char kHeader[] =
     R"({"type":"header","format":"jink-log/1","version":"0.1.0","scenario":"crossing","seed":1,"start":[0,0,1.5],)"
-    R"("target":[20,0,1.5],"vehicle":{"radius":0.25},"world":null,"parameters":{"horizon.step":"0.1"}})"
+    R"("target":[20,0,1.5],"vehicle":{"radius":0.25},"world":null,"parameters":{"horizon.step":"0.1"},)"
+    R"("shapes":[{"id":3,"box":[1,2,3]},{"id":4,"vertices":[[-1,-1,-1],[1,-1,-1],[0,1,-1],[0,0,1]]}]})"
     "\n";
 constexpr char kDataBegin[] = "id=\"flight-data\">";
 
@@ -45,7 +46,7 @@ Json data_of(const std::string& page) {
 Json report_of(const std::string& log, const Json* summary = nullptr) {
   const Folder folder;
   write_report(folder.log(log), folder.html(), summary);
-  return data_of(read(folder.html()));
+  return data_of(read(folder.html()))["flights"][0];
 }
 
 std::string error_of(const std::string& log) {
@@ -100,13 +101,33 @@ std::string flight(bool truth) {
   for (int i = 0; i <= 500; ++i) {
     const double t = 0.02 * i;
     const Triple p{2.0 * t, 0.0, 1.5}, there{10.0, 2.0 - 0.2 * t, 1.5};
-    if (truth) log += motion("truth", t, p, {2, 0, 0}) + obstacle(t, 1, there, 0.5) + obstacle(t, 2, {5, 4, 1}, 0.5);
+    if (truth) {
+      log += motion("truth", t, p, {2, 0, 0}) + obstacle(t, 1, there, 0.5) + obstacle(t, 2, {5, 4, 1}, 0.5);
+      log += obstacle(t, 3, {13, -4, 1.5}, 1.871) + obstacle(t, 4, {16, 4, 1}, 1.732);
+    }
     log += motion("state", t, p, {2, 0, 0});
     if (i % 2 == 0) log += tracks(t, there, {0, -0.2, 0}, 0.5);
     if (i % 5 == 0) log += plan(t, 10.0 + i % 7, i > 200 && i < 230 ? "blocked" : "progresses", i == 300);
     log += motion("setpoint", t, {p[0] + 0.4, 0, 1.5}, {2, 0, 0});
   }
   return log + (truth ? event(10.0, "reached", "at the target") : event(10.0, "phase", "done: reached, landed"));
+}
+
+/// Two vehicles of a simulator that fly towards each other, 1.5 m apart as they pass at t = 5.
+std::string team() {
+  std::string log =
+      R"({"type":"header","format":"jink-log/1","version":"0.1.0","scenario":"swap","seed":1,"start":[0,0,1.5],)"
+      R"("target":[20,0,1.5],"vehicle":{"radius":0.25},"vehicles":[{"radius":0.25,"start":[0,0,1.5],)"
+      R"("target":[20,0,1.5]},{"radius":0.35,"start":[20,1.5,1.5],"target":[0,1.5,1.5]}]})"
+      "\n";
+  for (int i = 0; i <= 500; ++i) {
+    const double t = 0.02 * i;
+    const Triple a{2.0 * t, 0.0, 1.5}, b{20.0 - 2.0 * t, 1.5, 1.5};
+    for (int k = 0; k < 2; ++k)
+      log +=
+          record({{"type", "truth"}, {"t", t}, {"vehicle", k}, {"p", k == 0 ? a : b}, {"v", {k == 0 ? 2 : -2, 0, 0}}});
+  }
+  return log;
 }
 
 TEST(Thin, KeepsFirstLastAndWhatIsFarEnoughApart) {
@@ -144,7 +165,7 @@ TEST(FlightReport, TakesTheClearanceFromTheTruthWhereThereIsOne) {
   const Json data = report_of(flight(true));
   EXPECT_EQ(data["clearance"]["from"], "true");
   EXPECT_NEAR(data["clearance"]["min"]["d"].get<double>(), least, 5.1e-4);
-  EXPECT_EQ(data["obstacles"]["frames"][0].size(), 2U * 5U);
+  EXPECT_EQ(data["obstacles"]["frames"][0].size(), 4U * 5U);
 }
 
 TEST(FlightReport, ClearanceMinimumSurvivesThinning) {
@@ -157,6 +178,60 @@ TEST(FlightReport, ClearanceMinimumSurvivesThinning) {
   EXPECT_EQ(clearance["min"]["d"], 0.25);
   EXPECT_EQ(clearance["min"]["t"], 1.02);
   EXPECT_NE(std::find(clearance["d"].begin(), clearance["d"].end(), Json(0.25)), clearance["d"].end());
+}
+
+TEST(FlightReport, MeasuresToTheTrueShapeAndShowsIt) {
+  // Beside the box's face at x = 0.5, where its sphere of radius 1.871 would be long reached.
+  std::string log = kHeader + motion("truth", 0.0, {1.5, 0, 0}, {0, 0, 0}) + obstacle(0.0, 3, {0, 0, 0}, 1.871);
+  EXPECT_EQ(report_of(log)["clearance"]["min"]["d"], 1.0 - 0.25);
+  // Below the hull's base at z = -1.
+  log = kHeader + motion("truth", 0.0, {0, 0, -3}, {0, 0, 0}) + obstacle(0.0, 4, {0, 0, 0}, 1.732);
+  const Json data = report_of(log);
+  EXPECT_EQ(data["clearance"]["min"]["d"], 2.0 - 0.25);
+  EXPECT_EQ(data["shapes"]["3"], (Json{{"box", {1.0, 2.0, 3.0}}}));
+  EXPECT_EQ(data["shapes"]["4"]["vertices"].size(), 12U);
+  EXPECT_EQ(data["shapes"]["4"]["faces"].size(), 12U);  // a tetrahedron's four
+  EXPECT_FALSE(data["header"].contains("shapes"));      // they are told once
+}
+
+TEST(FlightReport, MeasuresTheVehiclesOfATeamAgainstEachOther) {
+  const Json data = report_of(team());
+  ASSERT_EQ(data["others"].size(), 1U);
+  const Json& other = data["others"][0];
+  EXPECT_EQ(other["number"], 1);
+  EXPECT_EQ(other["radius"], 0.35);
+  for (const Json& clearance : {data["clearance"], other["clearance"]}) {
+    EXPECT_EQ(clearance["min"]["t"], 5.0);
+    EXPECT_EQ(clearance["min"]["d"], 1.5 - 0.25 - 0.35);
+  }
+}
+
+TEST(FlightReport, TellsWhatAPlanKnewOfTheOthers) {
+  Json json = Json::parse(plan(2.0, 5.0, "progresses"));
+  json["from"] = {{"start", 2.5}, {"acceleration_trust", 0.8}};
+  json["from"]["paths"] = {
+      {{"id", 9}, {"offset", 100.0}, {"radius", 0.4}, {"points", {{100, 1, 2, 3}, {101, 2, 2, 3}}}}};
+  const Json known = report_of(kHeader + record(json))["plans"][0];
+  EXPECT_EQ(known["trust"], 0.8);
+  EXPECT_EQ(known["known"][0]["path"], (Json{2.5, 1.0, 2.0, 3.0, 3.5, 2.0, 2.0, 3.0}));
+  EXPECT_FALSE(report_of(kHeader + plan(2.0, 5.0, "reaches"))["plans"][0].contains("trust"));  // an older log
+}
+
+TEST(FlightReport, PutsSeveralFlightsIntoOnePage) {
+  const Folder folder;
+  const std::filesystem::path first = folder.path() / "first.jsonl";
+  std::filesystem::copy_file(folder.log(flight(true)), first);
+  const Json summary{{"outcome", "reached"}};
+  const std::vector<ReportSource> sources{{first, std::nullopt}, {folder.log(flight(false)), summary}};
+  const auto results = write_report(sources, folder.html());
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_GT(results[0].lines, results[1].lines);
+  const Json flights = data_of(read(folder.html()))["flights"];
+  ASSERT_EQ(flights.size(), 2U);
+  EXPECT_EQ(flights[0]["file"], "first.jsonl");
+  EXPECT_EQ(flights[0]["vehicle"]["from"], "truth");
+  EXPECT_EQ(flights[1]["vehicle"]["from"], "state");
+  EXPECT_EQ(flights[1]["summary"], summary);
 }
 
 TEST(FlightReport, MovesTracksToTheTimeOfTheEstimate) {
@@ -207,7 +282,7 @@ TEST(FlightReport, HoldsTextInItsPlace) {
   const std::string page = read(folder.html());
   EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);
-  const Json data = data_of(page);  // and yet it reads back as it was
+  const Json data = data_of(page)["flights"][0];  // and yet it reads back as it was
   EXPECT_EQ(data["events"][0], (Json{1.0, evil, evil}));
   EXPECT_EQ(data["summary"]["reason"], evil);
 }
@@ -236,7 +311,7 @@ TEST(FlightReport, SkipsAndCountsALastLineThatIsCutOff) {
   const ReportResult result =
       write_report(folder.log(flight(false) + R"({"type":"state","t":10.02,"p":[1.0,2)"), folder.html());
   EXPECT_EQ(result.skipped, 1U);
-  const Json data = data_of(read(folder.html()));
+  const Json data = data_of(read(folder.html()))["flights"][0];
   EXPECT_EQ(data["log"]["cut_off"], 1);
   EXPECT_EQ(data["log"]["lines"], result.lines);
   EXPECT_EQ(data["t"][1], 10.0);
@@ -253,6 +328,10 @@ TEST(FlightReport, SkipsAndCountsRecordsThatAreNotFiniteOrUnknown) {
   EXPECT_EQ(result.skipped, 2U);
 }
 
+std::string with_shapes(const std::string& shapes) {
+  return R"({"type":"header","format":"jink-log/1","shapes":)" + shapes + "}\n";
+}
+
 TEST(FlightReport, RefusesBadLogsWithTheirLine) {
   const std::string header = kHeader;
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -262,6 +341,14 @@ TEST(FlightReport, RefusesBadLogsWithTheirLine) {
       {event(0.0, "a", "b"), ":1: the first line is not a jink-log/1 header"},
       {"{\"type\":\"header\",\"format\":\"jink-log/2\"}\n", ":1: format: \"jink-log/2\" is not \"jink-log/1\""},
       {"{\"type\":\"header\"}\n", ":1: format: null is not \"jink-log/1\""},
+      {with_shapes("7"), ":1: header \"shapes\" is not a list"},
+      {with_shapes("[7]"), ":1: header \"shapes\" holds what is no object"},
+      {with_shapes("[{\"box\":[1,1,1]}]"), ":1: header has no \"id\""},
+      {with_shapes("[{\"id\":1,\"box\":[1,1]}]"), ":1: header \"box\" is not a list of 3 numbers"},
+      {with_shapes("[{\"id\":1,\"box\":[1,1,-1]}]"), ":1: header \"box\" is out of range"},
+      {with_shapes("[{\"id\":1,\"box\":[1,1,null]}]"), ":1: header \"shapes\" holds a number that is not finite"},
+      {with_shapes("[{\"id\":1}]"), ":1: header has no \"vertices\""},
+      {with_shapes("[{\"id\":1,\"vertices\":[]}]"), ":1: header \"vertices\" is not a list of 1 to 10000 points"},
       {header + "{\"type\":\n" + event(1.0, "a", "b"), ":2: is not JSON"},
       {header + "\n7\n", ":3: is not a JSON object"},
       {header + "{\"t\":1}\n", ":2: has no \"type\""},
@@ -301,13 +388,18 @@ TEST(FlightReport, StaysSmallForAMinuteAmongTwentyObstacles) {
   EXPECT_LT(std::filesystem::file_size(folder.html()), 5U << 20U);
 }
 
-TEST(FlightReport, TheTwoKindsOfLogs) {
+TEST(FlightReport, TheKindsOfLogs) {
   const char* keep = std::getenv("JINK_REPORT_DIR");
   const Folder folder;
   const std::filesystem::path out = keep != nullptr ? std::filesystem::path(keep) : folder.path();
   EXPECT_EQ(write_report(folder.log(flight(true)), out / "replay.html").skipped, 0U);
-  EXPECT_EQ(write_report(folder.log(flight(false)), out / "fly.html").skipped, 0U);
+  EXPECT_EQ(write_report(folder.log(team()), out / "team.html").skipped, 0U);
   EXPECT_EQ(write_report(folder.log(kHeader), out / "empty.html").lines, 1U);
+  const std::filesystem::path other = folder.path() / "other.jsonl";
+  std::filesystem::copy_file(folder.log(flight(true)), other);
+  EXPECT_EQ(write_report(folder.log(flight(false)), out / "fly.html").skipped, 0U);
+  const std::vector<ReportSource> both{{other, std::nullopt}, {folder.path() / "flight.jsonl", std::nullopt}};
+  EXPECT_EQ(write_report(both, out / "compare.html").size(), 2U);
 }
 
 }  // namespace

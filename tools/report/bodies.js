@@ -1,63 +1,41 @@
-// What moves or is aimed at, in the scene: spheres, paths, tracks, start and target.
-const kColors = {
-  vehicle: "#1761c7", flown: "#1761c7", whole: "#c5d8ef", plan: "#14915a", blocked: "#c8321f", obstacle: "#c98b3c",
-  track: "#7a4fb5", setpoint: "#d0368a", near: "#c8321f"
-};
+// What moves or is aimed at, in the scene: bodies, paths, tracks, start and target.
 const kShownGap = 2.0;      // m, up to which the gap to the nearest obstacle is drawn
-const kVehicleRadius = flight.vehicle.radius || 0.05;  // m, of the drawing; a dot where the log tells none
+const kDot = 0.05;          // m, radius of the drawing where the log tells none
 const kMostSegments = 700;  // of the whole path, for a smooth picture
 
-/** A sphere shaded from the upper left. Depth to its centre; the size is exact for a sphere in the view's middle. */
-function drawSphere(ctx, camera, p, radius, color, rim) {
-  const s = camera.project(p);
-  if (!s) return;
-  const r = Math.max(1.5, camera.scale * radius / s[2]);
-  const shade = ctx.createRadialGradient(s[0] - 0.35 * r, s[1] - 0.4 * r, 0.1 * r, s[0], s[1], r);
-  shade.addColorStop(0, lighter(color, 0.75));
-  shade.addColorStop(0.55, color);
-  shade.addColorStop(1, lighter(color, -0.35));
-  ctx.beginPath();
-  ctx.arc(s[0], s[1], r, 0, 2 * Math.PI);
-  ctx.fillStyle = shade;
-  ctx.fill();
-  if (!rim) return;
-  ctx.lineWidth = 2;
-  ctx.strokeStyle = rim;
-  ctx.stroke();
-}
-
-/** "#rrggbb" mixed with white (share > 0) or black (share < 0). */
-function lighter(color, share) {
-  const goal = share > 0 ? 255 : 0;
-  const parts = [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16));
-  return `rgb(${parts.map((c) => Math.round(c + Math.abs(share) * (goal - c))).join(",")})`;
-}
-
-/** The shadow straight below, which tells where over the ground a sphere is. */
-function drawShadow(ctx, camera, p, radius) {
-  if (p[2] < 0) return;
-  ctx.beginPath();
-  for (let i = 0; i <= 20; ++i) {
-    const a = i * Math.PI / 10;
-    const s = camera.project([p[0] + radius * Math.cos(a), p[1] + radius * Math.sin(a), 0]);
-    if (!s) return;
-    if (i === 0) ctx.moveTo(s[0], s[1]); else ctx.lineTo(s[0], s[1]);
-  }
-  ctx.fillStyle = "#33445518";
-  ctx.fill();
-}
-
-/** A ring where a track is, and what it predicts: its velocity times 1 s. */
-function drawTrack(ctx, camera, track, ring) {
+/** A ring where a track is, and the way that it is predicted to go, with a dot at each second. */
+function drawTrack(ctx, camera, track, trust, ring) {
   const s = camera.project(track.p);
   if (!s) return;
-  line(ctx, camera, track.p, track.p.map((x, k) => x + track.v[k]), kColors.track, 1.6, [4, 3]);
+  const ahead = prediction(track, trust);
+  drawWay(ctx, camera, ahead, kColors.track, 1.6, [4, 3]);
+  ctx.fillStyle = kColors.track;
+  for (let i = Math.round(1 / kAheadStep); i < ahead.length; i += Math.round(1 / kAheadStep)) {
+    const dot = camera.project(ahead[i]);
+    if (dot) ctx.fillRect(dot[0] - 1.5, dot[1] - 1.5, 3, 3);
+  }
   if (!ring) return;
   ctx.beginPath();
   ctx.arc(s[0], s[1], Math.max(2, camera.scale * track.r / s[2]), 0, 2 * Math.PI);
   ctx.strokeStyle = kColors.track;
   ctx.lineWidth = 1.2;
   ctx.setLineDash([3, 3]);
+  ctx.stroke();
+  ctx.setLineDash([]);
+}
+
+/** A line through points, in one stroke. */
+function drawWay(ctx, camera, points, color, width, dash = []) {
+  ctx.strokeStyle = color;
+  ctx.lineWidth = width;
+  ctx.setLineDash(dash);
+  ctx.beginPath();
+  for (let i = 1; i < points.length; ++i) {
+    const s = camera.segment(points[i - 1], points[i]);
+    if (!s) continue;
+    if (i === 1) ctx.moveTo(s[0][0], s[0][1]);
+    ctx.lineTo(s[1][0], s[1][1]);
+  }
   ctx.stroke();
   ctx.setLineDash([]);
 }
@@ -80,19 +58,27 @@ function drawMarker(ctx, camera, p, text, color) {
   label(ctx, camera, p, text, color, 0, -16);
 }
 
-/** Draws moments, and counts what it drew. */
+/** A vehicle's way, thinned: [{t, p}, ...]. */
+function thinned(series) {
+  const n = series.t.length;
+  const step = Math.max(1, Math.ceil(n / kMostSegments));
+  const way = [];
+  for (let i = 0; i < n; i += step) way.push({t: series.t[i], p: point(series.p, i)});
+  if (n > 0 && (n - 1) % step) way.push({t: series.t[n - 1], p: point(series.p, n - 1)});
+  return way;
+}
+
+/** Draws moments of one flight, and counts what it drew. */
 class Scene {
-  constructor(canvas) {
+  constructor(canvas, flight, bounds) {
     this.canvas = canvas;
+    this.flight = flight;
     this.ctx = canvas.getContext("2d");
-    this.ground = new Ground(sceneBounds());
+    this.ground = new Ground(bounds, flightVolume(flight));
     this.camera = new Camera(this.ground.bounds());
     this.follow = false;
-    const n = flight.vehicle.t.length;
-    const step = Math.max(1, Math.ceil(n / kMostSegments));
-    this.whole = [];
-    for (let i = 0; i < n; i += step) this.whole.push({t: flight.vehicle.t[i], p: point(flight.vehicle.p, i)});
-    if (n > 0 && (n - 1) % step) this.whole.push({t: flight.vehicle.t[n - 1], p: point(flight.vehicle.p, n - 1)});
+    this.ways = [{way: thinned(flight.vehicle), color: kColors.flown, mark: true}];
+    for (const other of flight.others) this.ways.push({way: thinned(other), color: kColors.other, series: other});
   }
 
   draw(moment) {
@@ -108,18 +94,27 @@ class Scene {
     camera.resize(width, height);
     if (this.follow && moment.vehicle) camera.center = [...moment.vehicle.p];
     this.items = [];
-    this.counts = {obstacles: 0, tracks: 0, flown: 0, whole: 0, plan: 0, vehicle: 0};
+    this.counts = {obstacles: 0, shapes: 0, tracks: 0, flown: 0, whole: 0, plan: 0, vehicle: 0};
     this.ground.draw(ctx, camera);
-    for (const body of moment.solid) drawShadow(ctx, camera, body.p, body.r);
-    if (moment.vehicle) drawShadow(ctx, camera, moment.vehicle.p, kVehicleRadius);
+    for (const body of moment.solid) drawShadow(ctx, camera, body.p, body.r, this.solidOf(moment, body));
+    for (const v of this.vehicles(moment)) drawShadow(ctx, camera, v.p, v.r);
     this.collectPaths(moment);
     this.collectBodies(moment);
     this.items.sort((a, b) => b.depth - a.depth);
     for (const item of this.items) item.draw();
-    if (moment.vehicle) this.drawOutline(moment.vehicle.p);
+    for (const v of this.vehicles(moment)) this.drawOutline(v);
     if (moment.nearest) this.drawNearest(moment);
     return this.counts;
   }
+
+  /** The flight's own vehicle, then the others, as drawn. */
+  vehicles(moment) {
+    const own = moment.vehicle ? [{...moment.vehicle, r: this.flight.radius || kDot, color: kColors.vehicle}] : [];
+    return own.concat(moment.others.map((v) => ({...v, r: v.r || kDot, color: kColors.other})));
+  }
+
+  /** The polyhedron of a true obstacle, undefined for a sphere and for tracks, whose shape nobody knows. */
+  solidOf(moment, body) { return moment.truth ? this.flight.solids.get(body.id) : undefined; }
 
   add(p, draw) { this.items.push({depth: this.camera.view(p)[2], draw}); }
 
@@ -128,60 +123,80 @@ class Scene {
   }
 
   collectPaths(moment) {
-    for (let i = 1; i < this.whole.length; ++i) {
-      const [a, b] = [this.whole[i - 1], this.whole[i]];
-      if (a.t >= moment.t) {  // under everything: it is where nothing is yet
-        line(this.ctx, this.camera, a.p, b.p, kColors.whole, 2);
-        ++this.counts.whole;
-      } else {
-        const end = b.t <= moment.t || !moment.vehicle ? b.p : moment.vehicle.p;
-        this.addSegment(a.p, end, kColors.flown, 2.5);
-        ++this.counts.flown;
+    for (const {way, color, mark, series} of this.ways) {
+      const now = mark ? moment.vehicle : moment.others.find((v) => v.series === series);
+      for (let i = 1; i < way.length; ++i) {
+        const [a, b] = [way[i - 1], way[i]];
+        if (a.t >= moment.t) {  // under everything: it is where nothing is yet
+          line(this.ctx, this.camera, a.p, b.p, kColors.whole, mark ? 2 : 1.2);
+          ++this.counts.whole;
+        } else {
+          this.addSegment(a.p, b.t <= moment.t || !now ? b.p : now.p, color, mark ? 3 : 2);
+          ++this.counts.flown;
+        }
       }
     }
     if (!moment.plan) return;
     const {path} = moment.plan;
-    const color = isBlocked(moment.plan) ? kColors.blocked : kColors.plan;
+    const blocked = isBlocked(moment.plan);
     for (let i = 4; i + 3 < path.length; i += 4) {
       if (path[i] < moment.t) continue;  // the plan's past is not worth a line
-      this.addSegment(path.slice(i - 3, i), path.slice(i + 1, i + 4), color, 2.5);
+      this.addSegment(path.slice(i - 3, i), path.slice(i + 1, i + 4), blocked ? kColors.blocked : kColors.plan, 3,
+                      blocked ? [6, 3] : []);
       ++this.counts.plan;
+    }
+    for (const known of moment.plan.known || []) {
+      for (let i = 4; i + 3 < known.path.length; i += 4) {
+        if (known.path[i] < moment.t) continue;
+        this.addSegment(known.path.slice(i - 3, i), known.path.slice(i + 1, i + 4), kColors.track, 1.6, [4, 3]);
+      }
     }
   }
 
   collectBodies(moment) {
-    const {ctx, camera} = this;
+    const {ctx, camera, flight} = this;
     for (const body of moment.solid) {
       const near = moment.nearest && moment.nearest.body === body && moment.nearest.free < 0.3;
-      this.add(body.p, () => drawSphere(ctx, camera, body.p, body.r, kColors.obstacle, near ? kColors.near : ""));
+      const solid = this.solidOf(moment, body);
+      const rim = near ? kColors.near : "";
+      const draw = () => (solid ? drawSolid(ctx, camera, body.p, solid, kColors.obstacle, rim)
+                                : drawSphere(ctx, camera, body.p, body.r, kColors.obstacle, rim));
+      this.add(body.p, draw);
       ++this.counts.obstacles;
+      if (solid) ++this.counts.shapes;
     }
     for (const track of moment.tracks) {
-      const depth = camera.view(track.p)[2] - track.r;  // before the sphere that it belongs to
-      this.items.push({depth, draw: () => drawTrack(ctx, camera, track, moment.truth)});
+      const depth = camera.view(track.p)[2] - track.r;  // before the body that it belongs to
+      this.items.push({depth, draw: () => drawTrack(ctx, camera, track, moment.trust, moment.truth)});
       ++this.counts.tracks;
     }
-    for (const [key, color] of [["start", "#5d6b7a"], ["target", kColors.plan]]) {
-      const p = flight.header[key];
-      if (isTriple(p)) this.add(p, () => drawMarker(ctx, camera, p, key, color));
-    }
+    const several = Array.isArray(flight.header.vehicles) && flight.header.vehicles.length > 1;
+    (several ? flight.header.vehicles : [flight.header]).forEach((ends, i) => {
+      for (const [key, color] of [["start", "#56626f"], ["target", "#00694d"]]) {
+        const p = ends && ends[key];
+        const text = several ? `${key} ${i}` : key;
+        if (isTriple(p)) this.add(p, () => drawMarker(ctx, camera, p, text, color));
+      }
+    });
     if (moment.setpoint) this.add(moment.setpoint.p, () => this.drawSetpoint(moment.setpoint.p));
-    if (!moment.vehicle) return;
-    const {p} = moment.vehicle;
-    this.add(p, () => drawSphere(ctx, camera, p, kVehicleRadius, kColors.vehicle, "#ffffff"));
-    ++this.counts.vehicle;
+    for (const v of this.vehicles(moment)) {
+      this.add(v.p, () => drawSphere(ctx, camera, v.p, v.r, v.color, "#ffffff"));
+      ++this.counts.vehicle;
+    }
   }
 
-  /** Where the vehicle is, even behind or within an obstacle. */
-  drawOutline(p) {
-    const s = this.camera.project(p);
+  /** Where a vehicle is, even behind or within an obstacle. */
+  drawOutline(v) {
+    const s = this.camera.project(v.p);
     if (!s) return;
     const {ctx} = this;
+    const r = Math.max(3, this.camera.scale * v.r / s[2]);
     ctx.beginPath();
-    ctx.arc(s[0], s[1], Math.max(2, this.camera.scale * kVehicleRadius / s[2]), 0, 2 * Math.PI);
-    ctx.strokeStyle = kColors.vehicle;
+    ctx.arc(s[0], s[1], r, 0, 2 * Math.PI);
+    ctx.strokeStyle = v.color;
     ctx.lineWidth = 1.5;
     ctx.stroke();
+    if (v.number !== undefined) label(ctx, this.camera, v.p, String(v.number), "#1c2530", 0, -r - 8);
   }
 
   drawSetpoint(p) {
@@ -200,17 +215,16 @@ class Scene {
 
   /** The gap to the nearest obstacle, drawn over everything: surface to surface. */
   drawNearest({vehicle, nearest}) {
-    const apart = length(vehicle.p, nearest.body.p);
+    const apart = length(vehicle.p, nearest.at);
     if (apart < 1e-6 || nearest.free > kShownGap) return;
-    const a = mix(vehicle.p, nearest.body.p, clamp((flight.vehicle.radius || 0) / apart, 0, 1));
-    const b = mix(nearest.body.p, vehicle.p, clamp(nearest.body.r / apart, 0, 1));
     const color = nearest.free < 0.3 ? kColors.near : "#45525f";
-    line(this.ctx, this.camera, a, b, color, 1.2);
-    const [from, to] = [this.camera.project(vehicle.p), this.camera.project(nearest.body.p)];
+    const edge = mix(vehicle.p, nearest.at, clamp(this.flight.radius / apart, 0, 1));
+    line(this.ctx, this.camera, edge, nearest.at, color, 1.4);
+    const [from, to] = [this.camera.project(vehicle.p), this.camera.project(nearest.at)];
     if (!from || !to) return;
     // Beside the vehicle, away from the obstacle, so that it covers neither.
     const away = Math.hypot(from[0] - to[0], from[1] - to[1]) || 1;
-    const reach = 14 + this.camera.scale * kVehicleRadius / from[2];
+    const reach = 14 + this.camera.scale * (this.flight.radius || kDot) / from[2];
     const [dx, dy] = [0, 1].map((k) => (from[k] - to[k]) / away * reach);
     const align = dx < -6 ? "right" : dx > 6 ? "left" : "center";
     label(this.ctx, this.camera, vehicle.p, `${nearest.free.toFixed(2)} m`, color, dx, dy, align);

@@ -1,19 +1,27 @@
-// The flight's data, as report_data.cpp writes them, and the questions asked of them. Lengths in m, times in s, ENU.
-//   t [first, last]; vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []};
-//   setpoints {t, p, speed};
-//   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz),...], ...]};
-//   plans [{t, ms, status, kept, missed, path [t,x,y,z,...]}]; events [[t, name, detail]];
-//   clearance null | {from: "true"|"tracks", t, d, min {t, d}}; summary null | jink-flight/1; derived {...}.
-const flight = JSON.parse(document.getElementById("flight-data").textContent);
-const [tFirst, tLast] = flight.t;
+// The flights' data, as report_data.cpp writes them, and the questions asked of them. Lengths in m, times in s, ENU.
+// flights [{file, t [first, last];
+//   vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []};
+//   others [{number, radius|null, t, p, speed, clearance}] the further vehicles of a team;
+//   setpoints {t, p, speed}; shapes {id: {box}|{vertices, faces}} of obstacles that are no spheres;
+//   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz,ax,ay,az,age),...], ...]};
+//   plans [{t, ms, status, kept, missed, path [t,x,y,z,...], trust?, known? [{id, radius, path}]}];
+//   events [[t, name, detail]]; clearance null | {from: "true"|"tracks", t, d, min {t, d}};
+//   summary null | jink-flight/1; derived {...}}].
 const kOldestTracks = 1.0;     // s, without a message after which tracks are no longer drawn
 const kOldestObstacles = 0.5;  // s, the same for true obstacles
+const kAhead = 2.0;            // s, that a track's prediction is drawn for
+const kAheadStep = 0.25;       // s
 
 const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 const isNumber = (x) => typeof x === "number" && Number.isFinite(x);
 const isTriple = (v) => Array.isArray(v) && v.length === 3 && v.every(isNumber);
 const point = (flat, i) => [flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]];
 const mix = (a, b, s) => a.map((x, k) => x + s * (b[k] - x));
+const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const length = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 /** Index of the last of the rising times that is not after t; -1: all are. */
@@ -40,8 +48,9 @@ function motionAt(series, t) {
 }
 
 function bodyFrom(list, k, stride) {
-  return {id: list[k], p: [list[k + 1], list[k + 2], list[k + 3]], r: list[k + 4],
-          v: stride > 5 ? [list[k + 5], list[k + 6], list[k + 7]] : null};
+  const body = {id: list[k], p: [list[k + 1], list[k + 2], list[k + 3]], r: list[k + 4]};
+  if (stride > 5) [body.v, body.a, body.age] = [list.slice(k + 5, k + 8), list.slice(k + 8, k + 11), list[k + 11]];
+  return body;
 }
 
 /** Obstacles or tracks at t: those of the newest frame, moved towards the next one where that has them too. */
@@ -64,18 +73,19 @@ function bodiesAt(series, t, oldest) {
   return bodies;
 }
 
-const planTimes = flight.plans.map((plan) => plan.t);
-const planAt = (t) => flight.plans[lastUpTo(planTimes, t + 1e-6)] || null;
-const isBlocked = (plan) => plan.status !== "reaches" && plan.status !== "progresses";
-
-/** The newest event of that name at t, or null. */
-function eventAt(name, t) {
-  let found = null;
-  for (const event of flight.events) {
-    if (event[0] <= t + 1e-6 && event[1] === name) found = event;
+/** Where a track is predicted to be, from now on: constant acceleration while it is trusted, then constant velocity. */
+function prediction(track, trust) {
+  const believed = Math.max(0, trust - track.age);
+  const points = [];
+  for (let t = 0; t <= kAhead + 1e-9; t += kAheadStep) {
+    const s = Math.min(t, believed);
+    points.push(track.p.map((x, k) =>
+      x + t * track.v[k] + (s ? track.a[k] * (0.5 * s * s + (t - s) * s) : 0)));
   }
-  return found;
+  return points;
 }
+
+const isBlocked = (plan) => plan.status !== "reaches" && plan.status !== "progresses";
 
 /** How an event is coloured: good, warn, bad or nothing. */
 function tone(name, detail) {
@@ -83,19 +93,71 @@ function tone(name, detail) {
   if (/^(collision|timeout|left_world|start_blocked|aborted)$/.test(name)) return "bad";
   if (/^done: (?!reached)/.test(detail)) return "bad";
   if (name === "plan_status") return /^(blocked|start_blocked|invalid)$/.test(detail) ? "bad" : "";
-  return /^(hazard|refused|send_failed|reference_lost|tracks_refused)$/.test(name) ? "warn" : "";
+  return /^(fault|hazard|refused|send_failed|reference_lost|tracks_refused|log_dropped)$/.test(name) ? "warn" : "";
 }
 
-/** What is drawn and measured at t. Solid obstacles are the true ones; where the log has none, the tracks. */
-function momentAt(t) {
-  const truth = flight.obstacles !== null;
-  const tracks = bodiesAt(flight.tracks, t, kOldestTracks);
-  const solid = truth ? bodiesAt(flight.obstacles, t, kOldestObstacles) : tracks;
-  const vehicle = motionAt(flight.vehicle, t);
-  let nearest = null;
-  for (const body of vehicle ? solid : []) {
-    const free = length(vehicle.p, body.p) - body.r - (flight.vehicle.radius || 0);
-    if (!nearest || free < nearest.free) nearest = {body, free};
+class Flight {
+  constructor(raw, index) {
+    Object.assign(this, raw);
+    this.index = index;
+    this.letter = String.fromCharCode(65 + index % 26);
+    this.color = kFlightColors[index % kFlightColors.length];
+    this.dash = kFlightDashes[index % kFlightDashes.length];
+    this.events.sort((a, b) => a[0] - b[0]);
+    this.planTimes = this.plans.map((plan) => plan.t);
+    this.solids = new Map(Object.entries(this.shapes).map(([id, shape]) => [Number(id), polyhedron(shape)]));
+    this.radius = this.vehicle.radius || 0;
   }
-  return {t, truth, tracks, solid, vehicle, nearest, plan: planAt(t), setpoint: motionAt(flight.setpoints, t)};
+
+  get name() {
+    const name = this.header.scenario ?? this.header.mission ?? this.file;
+    return typeof name === "string" ? name : JSON.stringify(name);
+  }
+
+  planAt(t) { return this.plans[lastUpTo(this.planTimes, t + 1e-6)] || null; }
+
+  /** The newest event of that name at t, or null. */
+  eventAt(name, t) {
+    let found = null;
+    for (const event of this.events) if (event[0] <= t + 1e-6 && event[1] === name) found = event;
+    return found;
+  }
+
+  /** The nearest surface to a point: {body, free, at}, free less the vehicle's radius; null without any. */
+  nearest(p, solid, others) {
+    let nearest = null;
+    for (const body of [...solid, ...others]) {
+      const {d, q} = toSurface(p, body, this.solids.get(body.id));
+      if (!nearest || d - this.radius < nearest.free) nearest = {body, free: d - this.radius, at: q};
+    }
+    return nearest;
+  }
+
+  /**
+   * What is drawn and measured at t; after the log's end what it ended with. Solid obstacles are the true ones; where
+   * the log has none, the tracks.
+   */
+  momentAt(time) {
+    const t = clamp(time, ...this.t);
+    const truth = this.obstacles !== null;
+    const tracks = bodiesAt(this.tracks, t, kOldestTracks);
+    const solid = truth ? bodiesAt(this.obstacles, t, kOldestObstacles) : tracks;
+    const vehicle = motionAt(this.vehicle, t);
+    const others = this.others.flatMap((other) => {
+      const motion = motionAt(other, t);
+      return motion ? [{...motion, r: other.radius || 0, number: other.number, series: other}] : [];
+    });
+    const plan = this.planAt(t);
+    const nearest = vehicle ? this.nearest(vehicle.p, solid, others) : null;
+    return {t, over: time > this.t[1] + 1e-6, truth, tracks, solid, vehicle, others, nearest, plan,
+            trust: plan ? plan.trust ?? Infinity : 0, setpoint: motionAt(this.setpoints, t)};
+  }
 }
+
+const flights = JSON.parse(document.getElementById("flight-data").textContent).flights
+  .map((raw, i) => new Flight(raw, i));
+const several = flights.length > 1;
+const tFirst = Math.min(...flights.map((flight) => flight.t[0]));
+const tLast = Math.max(...flights.map((flight) => flight.t[1]));
+const allEvents = flights.flatMap((flight) => flight.events.map((event) => ({flight, event})))
+  .sort((a, b) => a.event[0] - b.event[0]);

@@ -2,6 +2,7 @@
 #include "tools/report/flight_data.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tools/report/log_lines.hpp"
@@ -23,8 +24,72 @@ Body body_of(const Json& record, bool moving) {
   const Json& id = member(record, "id");
   if (!id.is_number_integer()) refuse("\"id\" is not a whole number");
   Body body{id.get<std::uint64_t>(), triple_of(record, "p"), {}, number_of(record, "radius")};
-  if (moving) body.velocity = triple_of(record, "v");
+  if (!moving) return body;
+  body.velocity = triple_of(record, "v");
+  if (record.contains("a")) body.acceleration = triple_of(record, "a");
+  if (record.contains("age")) body.age = number_of(record, "age");
   return body;
+}
+
+// As config::load_scenario bounds them.
+constexpr double kLargest = 1e3;   // m, edge
+constexpr double kFarthest = 2e5;  // m, vertex from the centre
+constexpr std::size_t kMostVertices = 10000;
+constexpr std::size_t kMostVehicles = 100;
+
+Triple bounded(const Json& value, const char* key, double low, double high) {
+  const Triple v = numbers<3>(value, key);
+  for (const double x : v) {
+    if (!(x >= low && x <= high)) refuse("\"" + std::string(key) + "\" is out of range");
+  }
+  return v;
+}
+
+config::Shape shape_of(const Json& record) {
+  if (const auto box = record.find("box"); box != record.end()) {
+    const Triple e = bounded(*box, "box", 0.0, kLargest);
+    return config::BoxShape{{e[0], e[1], e[2]}};
+  }
+  config::VertexShape hull;
+  const Json& list = list_of(record, "vertices");
+  if (list.empty() || list.size() > kMostVertices) refuse("\"vertices\" is not a list of 1 to 10000 points");
+  for (const Json& vertex : list) {
+    const Triple v = bounded(vertex, "vertices", -kFarthest, kFarthest);
+    hull.vertices.emplace_back(v[0], v[1], v[2]);
+  }
+  return hull;
+}
+
+std::map<std::uint64_t, config::Shape> shapes_of(const Json& header) {
+  std::map<std::uint64_t, config::Shape> shapes;
+  if (!header.contains("shapes")) return shapes;
+  for (const Json& record : list_of(header, "shapes")) {
+    if (!record.is_object()) refuse("\"shapes\" holds what is no object");
+    shapes[count_of(record, "id")] = shape_of(record);
+  }
+  return shapes;
+}
+
+/// What the plan was made from, as far as it can be shown. Older logs have none of it.
+void add_inputs(PlanRecord& plan, const Json& record) {
+  const auto from = record.find("from");
+  if (from == record.end() || !from->is_object()) return;
+  if (from->contains("acceleration_trust"))
+    plan.acceleration_trust = exact(member(*from, "acceleration_trust"), "acceleration_trust");
+  if (!from->contains("paths")) return;
+  const double start = number_of(*from, "start");
+  for (const Json& path : list_of(*from, "paths")) {
+    KnownPathRecord known{count_of(path, "id"), exact(member(path, "radius"), "radius"), {}};
+    const double offset = exact(member(path, "offset"), "offset");
+    bool finite = std::isfinite(known.radius);
+    for (const Json& item : list_of(path, "points")) {
+      auto point = exact_numbers<4>(item, "points");
+      point[0] += start - offset;
+      finite = finite && std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
+      known.points.push_back(point);
+    }
+    if (finite) plan.known_paths.push_back(std::move(known));
+  }
 }
 
 /// Takes the records one by one. What it remembers is what makes several records one thing.
@@ -53,9 +118,9 @@ class Reader {
  private:
   bool add(const std::string& type, double t, const Json& record) {
     if (type == "truth") {
-      // The report shows one flight: of several vehicles in a simulator's log, the first.
-      if (const auto vehicle = record.find("vehicle"); vehicle != record.end() && *vehicle != 0) return true;
-      data_.truth.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
+      const MotionSample sample{t, triple_of(record, "p"), triple_of(record, "v")};
+      const std::uint64_t number = record.contains("vehicle") ? count_of(record, "vehicle") : 0;
+      (number == 0 ? data_.truth : other(number)).push_back(sample);
     } else if (type == "obstacles") {
       const Body body = body_of(record, false);
       if (data_.obstacles.empty() || data_.obstacles.back().t != t) data_.obstacles.push_back({t, {}});
@@ -68,10 +133,14 @@ class Reader {
       for (const Json& track : list_of(record, "tracks")) frame.bodies.push_back(body_of(track, true));
       data_.tracks.push_back(std::move(frame));
     } else if (type == "plan") {
-      PlanRecord plan{
-          t, number_of(record, "ms"), text_of(record, "status"), flag_of(record, "kept"), flag_of(record, "missed"),
-          {}};
+      PlanRecord plan;
+      plan.t = t;
+      plan.ms = number_of(record, "ms");
+      plan.status = text_of(record, "status");
+      plan.kept = flag_of(record, "kept");
+      plan.missed = flag_of(record, "missed");
       for (const Json& point : list_of(record, "path")) plan.path.push_back(numbers<4>(point, "path"));
+      add_inputs(plan, record);
       data_.plans.push_back(std::move(plan));
     } else if (type == "setpoint") {
       data_.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
@@ -81,6 +150,14 @@ class Reader {
       return false;
     }
     return true;
+  }
+
+  std::vector<MotionSample>& other(std::uint64_t number) {
+    const auto place = std::find_if(data_.others.begin(), data_.others.end(),
+                                    [number](const OtherVehicle& v) { return v.number >= number; });
+    if (place != data_.others.end() && place->number == number) return place->truth;
+    if (data_.others.size() >= kMostVehicles) refuse("\"vehicle\" is the number of more than 100 vehicles");
+    return data_.others.insert(place, {number, {}})->truth;
   }
 
   void note_mode(double t, const Json& record) {
@@ -97,10 +174,30 @@ class Reader {
 
 }  // namespace
 
+std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t number) {
+  const Json* vehicle = nullptr;
+  if (const auto several = flight.header.find("vehicles"); several != flight.header.end() && several->is_array()) {
+    if (number < several->size()) vehicle = &(*several)[number];
+  } else if (const auto one = flight.header.find("vehicle"); one != flight.header.end()) {
+    vehicle = &*one;
+  }
+  if (vehicle == nullptr || !vehicle->is_object()) return std::nullopt;
+  const auto radius = vehicle->find("radius");
+  if (radius == vehicle->end() || !radius->is_number()) return std::nullopt;
+  return radius->get<double>();
+}
+
 FlightData read_flight(const std::filesystem::path& log) {
   LogLines lines(log);
   FlightData flight;
   flight.header = lines.header();
+  try {
+    flight.shapes = shapes_of(flight.header);
+  } catch (const NotFinite&) {
+    lines.fail("header \"shapes\" holds a number that is not finite");
+  } catch (const std::invalid_argument& error) {
+    lines.fail(std::string("header ") + error.what());
+  }
   Reader reader(flight);
   for (Json record; lines.next(record);) {
     try {

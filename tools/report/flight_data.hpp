@@ -6,9 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "config/scenario.hpp"
 
 namespace jink::tools {
 
@@ -22,18 +27,27 @@ struct MotionSample {
   Triple velocity{};
 };
 
-/// One obstacle: true, or as tracked. The velocity of a true one is not in the log and stays zero.
+/// One obstacle: true, or as tracked. The motion of a true one is not in the log and stays zero.
 struct Body {
   std::uint64_t id = 0;
-  Triple position{};
+  Triple position{};  ///< of the smallest sphere around it
   Triple velocity{};
   double radius = 0.0;
+  Triple acceleration{};
+  double age = 0.0;  ///< s, since it was measured
 };
 
 /// All obstacles of one instant.
 struct BodyFrame {
   double t = 0.0;
   std::vector<Body> bodies;
+};
+
+/// Where another vehicle of the team has said that it will be.
+struct KnownPathRecord {
+  std::uint64_t id = 0;
+  double radius = 0.0;
+  std::vector<std::array<double, 4>> points;  ///< t, x, y, z; t in the log's clock
 };
 
 struct PlanRecord {
@@ -43,6 +57,15 @@ struct PlanRecord {
   bool kept = false;                        ///< the previous plan was kept
   bool missed = false;                      ///< the deadline
   std::vector<std::array<double, 4>> path;  ///< t, x, y, z
+  /// s, for which the accelerations of the tracks were believed; infinite where the log does not bound it.
+  double acceleration_trust = std::numeric_limits<double>::infinity();
+  std::vector<KnownPathRecord> known_paths;
+};
+
+/// A vehicle of a simulator's log with several.
+struct OtherVehicle {
+  std::uint64_t number = 0;  ///< from 1: the log's own is 0
+  std::vector<MotionSample> truth;
 };
 
 struct EventRecord {
@@ -54,6 +77,8 @@ struct EventRecord {
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a json value does not throw, it only asserts
 struct FlightData {
   nlohmann::json header;
+  std::map<std::uint64_t, config::Shape> shapes;  ///< of the obstacles that are no spheres, about Body::position
+  std::vector<OtherVehicle> others;               ///< in the order of their numbers
   std::vector<MotionSample> truth, states, setpoints;
   std::vector<BodyFrame> obstacles, tracks;
   std::vector<PlanRecord> plans;
@@ -64,6 +89,9 @@ struct FlightData {
   std::size_t not_finite = 0;  ///< records that hold a number which is not finite
   std::size_t unknown = 0;     ///< records of another type
 };
+
+/// The radius of vehicle `number` by the header: "vehicle", or of several "vehicles"; none where it does not tell.
+[[nodiscard]] std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t number = 0);
 
 /// Reads `log`. Throws std::runtime_error "FILE: ..." where it cannot be opened and "FILE:LINE: ..." for content that
 /// is not jink-log/1; only the last line may be cut off. Linear in the log's size, which is held in memory.

@@ -1,6 +1,6 @@
-// Brings scene, plots and controls together around one thing: the present time.
+// Brings scenes, plots and controls together around one thing: the present time.
 const kStep = 0.1;  // s, of an arrow key; with shift ten times that
-const scene = new Scene($("scene"));
+const scenes = flights.map((flight) => new Scene(addStage(flight), flight, sceneBounds()));
 const plots = new Plots($("plot"));
 let now = tFirst;
 let playing = false;
@@ -8,16 +8,47 @@ let speed = 1;
 let lastFrame = 0;
 let pending = false;
 
+/** A place for a flight's scene; of several with a heading. */
+function addStage(flight) {
+  const stage = element("div", "", "stage");
+  if (several) {
+    const heading = element("div", "", "heading");
+    heading.append(chip(flight), element("b", flight.name), badge(flight), element("span", flight.file, "file"));
+    stage.append(heading);
+  }
+  const canvas = document.createElement("canvas");
+  canvas.className = "scene";
+  canvas.tabIndex = 0;
+  canvas.setAttribute("aria-label", `The flight ${flight.name} in three dimensions`);
+  stage.append(canvas);
+  $("stages").append(stage);
+  return canvas;
+}
+
 function redraw() {
   pending = false;
-  const moment = momentAt(now);
-  const counts = scene.draw(moment);
+  const moments = flights.map((flight) => flight.momentAt(now));
+  const counts = {};
+  scenes.forEach((scene, i) => {
+    for (const [key, n] of Object.entries(scene.draw(moments[i]))) counts[key] = (counts[key] || 0) + n;
+  });
   counts.plotted = plots.draw(now);
-  showNow(moment);
+  showNow(moments);
+  tellChecks(moments);
   $("slider").value = now;
   $("clock").replaceChildren(`${now.toFixed(2)} s `, element("small", `of ${tLast.toFixed(2)} s`));
   markEvents();
   return counts;
+}
+
+/** For checks without eyes: the time, and where on the page the vehicles are. */
+function tellChecks(moments) {
+  const vehicles = moments.map(({vehicle}, i) => {
+    const s = vehicle && scenes[i].camera.project(vehicle.p);
+    const box = scenes[i].canvas.getBoundingClientRect();
+    return s ? [box.left + s[0], box.top + s[1]] : null;
+  });
+  document.body.dataset.shown = JSON.stringify({t: now, playing, vehicles});
 }
 
 function requestRedraw() {
@@ -35,7 +66,7 @@ function setPlaying(on) {
   if (playing && now >= tLast) now = tFirst;
   $("play").textContent = playing ? "❚❚" : "▶";
   lastFrame = 0;
-  if (playing) requestAnimationFrame(playOn);
+  if (playing) requestAnimationFrame(playOn); else requestRedraw();
 }
 
 function playOn(stamp) {
@@ -62,25 +93,26 @@ function showTip(text, event) {
   tip.style.top = `${clamp(event.clientY - tip.offsetHeight - 10, 4, window.innerHeight)}px`;
 }
 
-const eventText = ([t, name, detail]) => `${t.toFixed(2)} s  ${name}${detail ? "\n" + detail : ""}`;
+const eventText = ({flight, event: [t, name, detail]}) =>
+  `${several ? flight.letter + "  " : ""}${t.toFixed(2)} s  ${name}${detail ? "\n" + detail : ""}`;
 let eventRows = [];
 let currentRow = -2;
 
 function showEvents() {
-  $("event-count").textContent = flight.events.length ? `(${flight.events.length})` : "– not in this log";
-  flight.events.sort((a, b) => a[0] - b[0]);
-  eventRows = flight.events.map((event) => {
-    const [t, name, detail] = event;
-    const row = element("li", "");
-    const text = element("span", name + (detail ? " " : ""));
-    text.append(element("span", detail, "detail"));
+  $("event-count").textContent = allEvents.length ? `(${allEvents.length})` : "– not in this log";
+  eventRows = allEvents.map((item) => {
+    const [t, name, detail] = item.event;
+    const row = element("li", "", tone(name, detail));
+    const text = element("span", "");
+    if (several) text.append(chip(item.flight), " ");
+    text.append(name + (detail ? " " : ""), element("span", detail, "detail"));
     row.append(element("time", t.toFixed(2)), text);
     row.addEventListener("click", () => setTime(t));
     $("events").append(row);
     const tick = element("i", "", tone(name, detail));
     tick.style.left = `${100 * (t - tFirst) / (tLast - tFirst || 1)}%`;
     tick.addEventListener("click", () => setTime(t));
-    tick.addEventListener("mousemove", (e) => showTip(eventText(event), e));
+    tick.addEventListener("mousemove", (e) => showTip(eventText(item), e));
     tick.addEventListener("mouseleave", () => showTip(""));
     $("ticks").append(tick);
     return row;
@@ -88,7 +120,7 @@ function showEvents() {
 }
 
 function markEvents() {
-  const current = lastUpTo(flight.events.map((event) => event[0]), now + 1e-6);
+  const current = lastUpTo(allEvents.map(({event}) => event[0]), now + 1e-6);
   if (current === currentRow) return;
   currentRow = current;
   eventRows.forEach((row, i) => {
@@ -101,8 +133,13 @@ function markEvents() {
   if (row) list.scrollTop = row.offsetTop - list.offsetTop - list.clientHeight / 2;
 }
 
-function connectScene() {
-  const canvas = $("scene");
+/** Turns all cameras as one: flights side by side are seen from the same place. */
+function turn(action) {
+  for (const scene of scenes) action(scene.camera);
+  requestRedraw();
+}
+
+function connectScene({canvas}) {
   let from = null;
   canvas.addEventListener("pointerdown", (e) => {
     from = e;
@@ -111,29 +148,29 @@ function connectScene() {
   canvas.addEventListener("pointermove", (e) => {
     if (!from) return;
     const [dx, dy] = [e.clientX - from.clientX, e.clientY - from.clientY];
-    if (e.shiftKey || from.button === 2) scene.camera.pan(dx, dy); else scene.camera.drag(dx, dy);
+    const shift = e.shiftKey || from.button === 2;
+    turn((camera) => (shift ? camera.pan(dx, dy) : camera.drag(dx, dy)));
     from = {clientX: e.clientX, clientY: e.clientY, button: from.button};
-    requestRedraw();
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { from = null; });
   canvas.addEventListener("contextmenu", (e) => e.preventDefault());
   canvas.addEventListener("wheel", (e) => {
     e.preventDefault();
-    scene.camera.zoom(Math.exp(clamp(e.deltaY, -200, 200) * 0.0015));
-    requestRedraw();
+    const factor = Math.exp(clamp(e.deltaY, -200, 200) * 0.0015);
+    turn((camera) => camera.zoom(factor));
   }, {passive: false});
-  const views = {free: scene.camera.aside(), top: [0, Math.PI / 2], south: [0, 0.02], west: [Math.PI / 2, 0.02]};
+}
+
+function connectViews() {
+  const views = {free: scenes[0].camera.aside(), top: [0, Math.PI / 2], south: [0, 0.02], west: [Math.PI / 2, 0.02]};
   for (const button of document.querySelectorAll("[data-view]")) {
-    button.addEventListener("click", () => {
-      scene.camera.look(...views[button.dataset.view]);
-      requestRedraw();
-    });
+    button.addEventListener("click", () => turn((camera) => camera.look(...views[button.dataset.view])));
   }
   $("follow").addEventListener("click", () => {
-    scene.follow = !scene.follow;
-    $("follow").setAttribute("aria-pressed", String(scene.follow));
-    if (!scene.follow) scene.camera.look(scene.camera.azimuth, scene.camera.elevation);
-    requestRedraw();
+    const on = !scenes[0].follow;
+    for (const scene of scenes) scene.follow = on;
+    $("follow").setAttribute("aria-pressed", String(on));
+    turn((camera) => { if (!on) camera.look(camera.azimuth, camera.elevation); });
   });
 }
 
@@ -150,9 +187,11 @@ function connectPlots() {
     const t = timeOf(e);
     if (seeking) setTime(t);
     const reach = plots.time(plots.x(tFirst) + 4) - tFirst;  // s, of four pixels
-    const close = flight.events.filter((event) => Math.abs(event[0] - t) <= reach).slice(0, 6);
-    const known = plots.series.filter((s) => plots.valueAt(s, t) !== null);
-    const text = known.map((s) => `${s.title} ${plots.valueAt(s, t).toFixed(2)} ${s.unit}`);
+    const close = allEvents.filter(({event}) => Math.abs(event[0] - t) <= reach).slice(0, 6);
+    const text = plots.series.flatMap((s) => flights.flatMap((flight) => {
+      const value = plots.valueAt(s, flight, t);
+      return value === null ? [] : [`${several ? flight.letter + "  " : ""}${s.title} ${value.toFixed(2)} ${s.unit}`];
+    }));
     showTip([`${t.toFixed(2)} s`, ...text, ...close.map(eventText)].join("\n"), e);
   });
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { seeking = false; });
@@ -189,11 +228,13 @@ function inkOf(canvas) {
   return inked / (canvas.width * canvas.height);
 }
 
+document.body.classList.toggle("several", several);
 showAbout();
 showSummary();
 showLegend();
 showEvents();
-connectScene();
+scenes.forEach(connectScene);
+connectViews();
 connectPlots();
 connectKeys();
 setSpeed(1);
@@ -208,4 +249,6 @@ window.addEventListener("hashchange", timeFromAddress);
 window.addEventListener("resize", requestRedraw);
 timeFromAddress();
 const drawn = redraw();
-document.body.dataset.ready = JSON.stringify({...drawn, t: now, events: flight.events.length, ink: inkOf($("scene"))});
+const ink = Math.min(...scenes.map(({canvas}) => inkOf(canvas)));
+document.body.dataset.ready =
+  JSON.stringify({...drawn, t: now, flights: flights.length, events: allEvents.length, ink});

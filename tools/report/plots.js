@@ -1,5 +1,7 @@
-// Four plots over one time axis, with a cursor. One canvas.
-const kPlot = {left: 58, right: 14, top: 4, height: 70, gap: 10, axis: 22};
+// Four plots over one time axis, with the events above them and a cursor. One canvas.
+const kPlot = {left: 58, right: 14, top: 26, height: 84, gap: 12, axis: 26};
+const kFont = "12px system-ui, sans-serif";
+const kHalo = "#ffffffe0";
 
 /** Round numbers that divide [low, high] in about `count` parts. */
 function axisTicks(low, high, count) {
@@ -7,31 +9,53 @@ function axisTicks(low, high, count) {
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((s) => s * power).find((s) => s >= raw - 1e-12);
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push(i * step);
+  const first = Math.ceil(low / step - 1e-9);
+  for (let i = 0; i < 200 && (first + i) * step <= high + 1e-9 * step; ++i) ticks.push((first + i) * step);
   return {ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
 }
 
 const heights = (series) => series.t.map((_, i) => series.p[3 * i + 2]);
 
-/** What the four plots show: {title, unit, lines: [{t, y, color}], ...}. No data: an empty line list. */
-function plotSeries() {
-  const {clearance, vehicle, setpoints, plans} = flight;
-  const source = !clearance ? "" : clearance.from === "true" ? "true" : "from tracks";
-  const to = flight.vehicle.radius === null ? "vehicle's centre to" : "to";
-  const who = (vehicle.from === "truth" ? "true" : "estimate") + (setpoints.t.length ? "; grey: setpoint" : "");
-  const motion = (y, set) => {
-    const lines = [];
-    if (setpoints.t.length) lines.push({t: setpoints.t, y: set, color: "#b9c2cc", width: 1.2});
-    if (vehicle.t.length) lines.push({t: vehicle.t, y, color: kColors.vehicle, width: 1.6, name: true});
+/** The lines of one flight in the plots of clearance, speed and height; `main` is the one whose value is told. */
+function linesOf(flight, values, setpoints, others) {
+  const look = {gap: Math.max(1, 5 * flight.log.interval), flight};
+  const lines = [];
+  if (several || !setpoints) {
+    if (values) lines.push({...values, ...look, color: flight.color, dash: flight.dash, width: 1.7, main: true});
     return lines;
-  };
-  const gap = clearance ? [{t: clearance.t, y: clearance.d, color: "#b06a10", width: 1.6, name: true}] : [];
+  }
+  if (setpoints.t.length) lines.push({...setpoints, ...look, color: "#a3adb8", dash: [], width: 1.2});
+  for (const other of others) lines.push({...other, ...look, color: kColors.other, dash: [], width: 1});
+  if (values && values.t.length) {
+    lines.push({...values, ...look, color: kColors.vehicle, dash: [], width: 1.7, main: true});
+  }
+  return lines;
+}
+
+/** What the four plots show: {title, note, unit, lines: [{t, y, color, ...}], ...}. No data: no lines. */
+function plotSeries() {
+  const first = flights[0];
+  const from = !first.clearance ? "" : first.clearance.from === "true" ? "true" : "from tracks";
+  const to = flights.some((f) => f.vehicle.radius === null) ? "vehicle's centre to" : "to";
+  const team = first.others.length ? "; thin: the others" : "";
+  const nearest = `${to} the nearest obstacle${first.others.length ? " or vehicle" : ""}`;
+  const what = (first.vehicle.from === "truth" ? "true" : "estimate") +
+               (first.setpoints.t.length ? "; grey: setpoint" : "");
+  const who = several ? "" : what + team;
+  const motion = (pick) => flights.flatMap((f) => linesOf(
+    f, {t: f.vehicle.t, y: pick(f.vehicle)}, {t: f.setpoints.t, y: pick(f.setpoints)},
+    f.others.map((o) => ({t: o.t, y: pick(o)}))));
+  const gaps = flights.flatMap((f) => linesOf(
+    f, f.clearance && {t: f.clearance.t, y: f.clearance.d}, {t: [], y: []},
+    f.others.filter((o) => o.clearance).map((o) => ({t: o.clearance.t, y: o.clearance.d}))));
+  const least = flights.flatMap((f) => (f.clearance ? [{...f.clearance.min, flight: f}] : []));
+  const plans = flights.flatMap((f) => f.plans.map((plan) => ({...plan, flight: f})));
   return [
-    {title: "clearance", note: `${to} the nearest obstacle${source ? ", " + source : ""}`, unit: "m", lines: gap,
-     min: clearance && clearance.min, zero: true, ceiling: 6},
-    {title: "speed", note: who, unit: "m/s", lines: motion(vehicle.speed, setpoints.speed), floor: 0},
-    {title: "height", note: who, unit: "m", lines: motion(heights(vehicle), heights(setpoints)), floor: 0},
-    {title: "plan time", note: "red: blocked, ring: deadline missed", unit: "ms", lines: [], plans, floor: 0}
+    {title: "clearance", note: several ? nearest : nearest + (from ? ", " + from : "") + team,
+     unit: "m", lines: gaps, least, zero: true, ceiling: 6},
+    {title: "speed", note: who, unit: "m/s", lines: motion((s) => s.speed), floor: 0},
+    {title: "height", note: who, unit: "m", lines: motion(heights), floor: 0},
+    {title: "plan time", note: "diamond: blocked, ring: deadline missed", unit: "ms", lines: [], plans, floor: 0}
   ];
 }
 
@@ -52,10 +76,11 @@ class Plots {
     let high = values.reduce((a, b) => Math.max(a, b), -Infinity);
     if (!isNumber(low) || !isNumber(high)) [low, high] = [0, 1];
     if (high - low < 0.5) high = low + 0.5;
-    return [low - (low < 0 ? 0.05 * (high - low) : 0), high + 0.32 * (high - low)];  // the title's room
+    return [low - (low < 0 ? 0.05 * (high - low) : 0), high + 0.3 * (high - low)];  // the title's room
   }
 
   get span() { return this.width - kPlot.left - kPlot.right; }
+  get bottom() { return kPlot.top + 4 * (kPlot.height + kPlot.gap) - kPlot.gap; }
   x(t) { return kPlot.left + (t - tFirst) / (tLast - tFirst || 1) * this.span; }
   time(x) { return clamp(tFirst + (x - kPlot.left) / this.span * (tLast - tFirst), tFirst, tLast); }
 
@@ -81,46 +106,69 @@ class Plots {
     const ctx = this.still.getContext("2d");
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.points = 0;
-    const bottom = kPlot.top + 4 * (kPlot.height + kPlot.gap) - kPlot.gap;
     const axis = axisTicks(tFirst, tLast, Math.max(3, this.width / 110));
-    ctx.font = "11px system-ui, sans-serif";
+    ctx.font = kFont;
     ctx.textBaseline = "middle";
     for (const s of axis.ticks) {
-      ctx.fillStyle = "#eef1f4";
-      ctx.fillRect(this.x(s) - 0.5, kPlot.top, 1, bottom - kPlot.top);
-      ctx.fillStyle = "#7b8794";
+      ctx.fillStyle = "#e8ecf0";
+      ctx.fillRect(this.x(s) - 0.5, kPlot.top, 1, this.bottom - kPlot.top);
+      ctx.fillStyle = "#56626f";
       ctx.textAlign = "center";
-      ctx.fillText(`${s.toFixed(axis.digits)} s`, this.x(s), bottom + 12);
+      ctx.fillText(`${s.toFixed(axis.digits)} s`, this.x(s), this.bottom + 13);
     }
-    for (const [at, name, detail] of flight.events) {
-      const color = {good: "#14915a66", warn: "#e09a1a77", bad: "#c8321f66"}[tone(name, detail)];
-      ctx.fillStyle = color || "#9aa6b255";
-      ctx.fillRect(this.x(at) - 0.5, kPlot.top, 1, bottom - kPlot.top);
-    }
+    this.drawEvents(ctx);
     this.series.forEach((s, i) => this.drawPanel(ctx, s, kPlot.top + i * (kPlot.height + kPlot.gap)));
+  }
+
+  /** A line through all plots for each event, and above them the names of those that matter, where there is room. */
+  drawEvents(ctx) {
+    const colors = {good: "#007a58", warn: "#9a6400", bad: "#c03a00"};
+    let free = kPlot.left;
+    for (const {flight, event: [at, name, detail]} of allEvents) {
+      const kind = tone(name, detail);
+      const x = this.x(at);
+      ctx.fillStyle = kind ? colors[kind] + "80" : "#9aa6b255";
+      ctx.fillRect(x - 0.5, kind ? kPlot.top - 6 : kPlot.top, 1, this.bottom - kPlot.top + (kind ? 6 : 0));
+      if (!kind) continue;
+      const what = name === "phase" || name === "fault" || name === "plan_status" ? detail : name;
+      const text = (several ? `${flight.letter} ` : "") + what.split(/[,;]/)[0].replace("_", " ");
+      const width = ctx.measureText(text).width;
+      const start = clamp(x - width / 2, kPlot.left, this.width - kPlot.right - width);
+      if (start < free || width > 240) continue;
+      ctx.fillStyle = colors[kind];
+      ctx.textAlign = "left";
+      ctx.fillText(text, start, 10);
+      free = start + width + 10;
+    }
   }
 
   drawPanel(ctx, s, top) {
     s.top = top;
     const y = s.y = (v) => top + kPlot.height * (1 - (v - s.range[0]) / (s.range[1] - s.range[0]));
-    ctx.strokeStyle = "#dfe4ea";
+    ctx.strokeStyle = "#cdd5dd";
     ctx.lineWidth = 1;
     ctx.strokeRect(kPlot.left + 0.5, top + 0.5, this.span - 1, kPlot.height - 1);
     const {ticks, digits} = axisTicks(s.range[0], s.range[1], 3);
     ctx.textAlign = "right";
     for (const v of ticks) {
-      ctx.fillStyle = s.zero && Math.abs(v) < 1e-9 ? "#c8321f99" : "#eef1f4";
+      ctx.fillStyle = s.zero && Math.abs(v) < 1e-9 ? kColors.near : "#e8ecf0";
       ctx.fillRect(kPlot.left + 1, Math.round(y(v)) - 0.5, this.span - 2, 1);
-      ctx.fillStyle = "#7b8794";
+      ctx.fillStyle = "#56626f";
       if (y(v) > top + 4) ctx.fillText(v.toFixed(digits), kPlot.left - 6, y(v));
     }
+    ctx.save();
+    ctx.translate(11, top + kPlot.height / 2);
+    ctx.rotate(-Math.PI / 2);
+    ctx.textAlign = "center";
+    ctx.fillText(s.unit, 0, 0);
+    ctx.restore();
     ctx.save();
     ctx.beginPath();
     ctx.rect(kPlot.left, top, this.span, kPlot.height);
     ctx.clip();
     for (const l of s.lines) this.drawLine(ctx, l, y);
     if (s.plans) this.drawPlans(ctx, s.plans, y);
-    if (s.min) this.drawLeast(ctx, s.min, y);
+    for (const least of s.least || []) this.drawLeast(ctx, least, y);
     this.drawTitle(ctx, s, top);
     ctx.restore();
   }
@@ -129,48 +177,52 @@ class Plots {
     const empty = s.plans ? s.plans.length === 0 : s.lines.length === 0;
     ctx.textAlign = "left";
     ctx.lineWidth = 4;
-    ctx.strokeStyle = "#ffffffe0";
+    ctx.strokeStyle = kHalo;
     let x = kPlot.left + 8;
-    const note = `${s.unit}, ${empty ? "not in this log" : s.note}`;
-    for (const [text, font, color] of [[s.title, "600 12px system-ui, sans-serif", "#1c2530"],
-                                       [note, "11px system-ui, sans-serif", "#7b8794"]]) {
+    for (const [text, font, color] of [[s.title, `600 ${kFont}`, "#1c2530"],
+                                       [empty ? "not in this log" : s.note, kFont, "#56626f"]]) {
       ctx.font = font;
       ctx.strokeText(text, x, top + 11);
       ctx.fillStyle = color;
       ctx.fillText(text, x, top + 11);
-      x += ctx.measureText(text).width + 6;
+      x += ctx.measureText(text).width + 8;
     }
-    ctx.font = "11px system-ui, sans-serif";
+    ctx.font = kFont;
   }
 
   drawLine(ctx, l, y) {
     ctx.beginPath();
-    // A gap in the log is a gap in the line.
-    const gap = Math.max(1, 5 * flight.log.interval);
     for (let i = 0; i < l.t.length; ++i) {
       const [px, py] = [this.x(l.t[i]), y(l.y[i])];
-      if (i === 0 || l.t[i] - l.t[i - 1] > gap) ctx.moveTo(px, py); else ctx.lineTo(px, py);
+      // A gap in the log is a gap in the line.
+      if (i === 0 || l.t[i] - l.t[i - 1] > l.gap) ctx.moveTo(px, py); else ctx.lineTo(px, py);
     }
     ctx.strokeStyle = l.color;
     ctx.lineWidth = l.width;
     ctx.lineJoin = "round";
+    ctx.setLineDash(l.dash);
     ctx.stroke();
+    ctx.setLineDash([]);
     this.points += l.t.length;
   }
 
   drawPlans(ctx, plans, y) {
     for (const plan of plans) {
       const [px, py] = [this.x(plan.t), y(plan.ms)];
-      ctx.fillStyle = isBlocked(plan) ? kColors.blocked : kColors.plan;
-      if (isBlocked(plan)) ctx.fillRect(px - 1, py, 2, y(0) - py);
+      const blocked = isBlocked(plan);
+      ctx.fillStyle = several ? plan.flight.color : blocked ? kColors.blocked : kColors.plan;
       ctx.beginPath();
-      ctx.arc(px, py, isBlocked(plan) ? 3 : 1.8, 0, 2 * Math.PI);
+      if (blocked) {
+        for (const [dx, dy] of [[0, -4.5], [4.5, 0], [0, 4.5], [-4.5, 0]]) ctx.lineTo(px + dx, py + dy);
+      } else {
+        ctx.arc(px, py, 1.8, 0, 2 * Math.PI);
+      }
       ctx.fill();
       if (!plan.missed) continue;
       ctx.beginPath();
-      ctx.arc(px, py, 5, 0, 2 * Math.PI);
-      ctx.strokeStyle = "#b87400";
-      ctx.lineWidth = 1.5;
+      ctx.arc(px, py, 5.5, 0, 2 * Math.PI);
+      ctx.strokeStyle = "#1c2530";
+      ctx.lineWidth = 1.3;
       ctx.stroke();
     }
     this.points += plans.length;
@@ -178,22 +230,24 @@ class Plots {
 
   drawLeast(ctx, least, y) {
     const [px, py] = [this.x(least.t), y(least.d)];
+    const color = several ? least.flight.color : kColors.near;
     ctx.beginPath();
-    ctx.arc(px, py, 3, 0, 2 * Math.PI);
-    ctx.fillStyle = kColors.near;
+    ctx.arc(px, py, 3.5, 0, 2 * Math.PI);
+    ctx.fillStyle = color;
     ctx.fill();
-    const left = px > this.width - 120;
+    const left = px > this.width - 130;
     ctx.textAlign = left ? "right" : "left";
     ctx.lineWidth = 4;
-    ctx.strokeStyle = "#ffffffe0";
-    const text = `least ${least.d.toFixed(3)} m`;
-    ctx.strokeText(text, px + (left ? -7 : 7), py - 8);
-    ctx.fillText(text, px + (left ? -7 : 7), py - 8);
+    ctx.strokeStyle = kHalo;
+    const text = several ? `${least.flight.letter} ${least.d.toFixed(2)}` : `least ${least.d.toFixed(3)} m`;
+    ctx.strokeText(text, px + (left ? -8 : 8), py - 8);
+    ctx.fillText(text, px + (left ? -8 : 8), py - 8);
   }
 
-  /** The value of panel s at t: between two samples, or the newest plan's; null with none in the last second. */
-  valueAt(s, t) {
-    const main = s.plans ? {t: planTimes, y: s.plans.map((plan) => plan.ms)} : s.lines.find((l) => l.name);
+  /** Flight's value in panel s at t: between two samples, or the newest plan's; null with none in the last second. */
+  valueAt(s, flight, t) {
+    const main = s.plans ? {t: flight.planTimes, y: flight.plans.map((plan) => plan.ms)}
+                         : s.lines.find((l) => l.main && l.flight === flight);
     const i = main ? lastUpTo(main.t, t + 1e-6) : -1;
     if (i < 0 || t - main.t[i] > 1) return null;
     if (s.plans || i + 1 >= main.t.length || main.t[i + 1] - main.t[i] > 1) return main.y[i];
@@ -204,21 +258,26 @@ class Plots {
     const {ctx} = this;
     const x = this.x(t);
     ctx.fillStyle = "#1c2530";
-    ctx.fillRect(x - 0.5, kPlot.top, 1, 4 * (kPlot.height + kPlot.gap) - kPlot.gap);
-    ctx.font = "600 12px system-ui, sans-serif";
+    ctx.fillRect(x - 0.5, kPlot.top, 1, this.bottom - kPlot.top);
+    ctx.font = `600 ${kFont}`;
     ctx.textAlign = "right";
     ctx.textBaseline = "middle";
+    ctx.lineWidth = 4;
+    ctx.strokeStyle = kHalo;
     for (const s of this.series) {
-      const value = this.valueAt(s, t);
-      if (value === null) continue;
-      const text = `${value.toFixed(s.plans ? 1 : 2)} ${s.unit}`;
-      ctx.lineWidth = 4;
-      ctx.strokeStyle = "#ffffffe0";
-      ctx.strokeText(text, this.width - kPlot.right - 8, s.top + 11);
-      ctx.fillText(text, this.width - kPlot.right - 8, s.top + 11);
-      ctx.beginPath();
-      ctx.arc(x, clamp(s.y(value), s.top, s.top + kPlot.height), 3, 0, 2 * Math.PI);
-      ctx.fill();
+      let right = this.width - kPlot.right - 8;
+      for (const flight of [...flights].reverse()) {
+        const value = this.valueAt(s, flight, t);
+        if (value === null) continue;
+        const text = (several ? `${flight.letter} ` : "") + `${value.toFixed(s.plans ? 1 : 2)} ${s.unit}`;
+        ctx.fillStyle = several ? flight.color : "#1c2530";
+        ctx.strokeText(text, right, s.top + 11);
+        ctx.fillText(text, right, s.top + 11);
+        right -= ctx.measureText(text).width + 14;
+        ctx.beginPath();
+        ctx.arc(x, clamp(s.y(value), s.top, s.top + kPlot.height), 3.5, 0, 2 * Math.PI);
+        ctx.fill();
+      }
     }
   }
 }

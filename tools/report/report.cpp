@@ -45,38 +45,49 @@ std::string embeddable(const std::string& json) {
   return out;
 }
 
-void write_whole(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path part = file.string() + "." + std::to_string(::getpid()) + ".part";
-  const auto fail = [&](const std::string& what) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw std::runtime_error(file.string() + ": " + what);
-  };
-  std::ofstream out(part, std::ios::binary);
-  if (!out) fail("cannot write the flight report");
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) fail("the flight report could not be written to its end");
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error) fail("cannot write the flight report: " + error.message());
-}
-
 }  // namespace
 
-ReportResult write_report(const std::filesystem::path& log, const std::filesystem::path& html,
-                          const nlohmann::json* summary) {
-  const FlightData flight = read_flight(log);
-  nlohmann::json data = report_data(flight, summary);
-  data["file"] = log.filename().string();
+void write_whole(const std::filesystem::path& file, std::string_view bytes, const std::string& what) {
+  const std::filesystem::path part = file.string() + "." + std::to_string(::getpid()) + ".part";
+  const auto fail = [&](const std::string& text) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw std::runtime_error(file.string() + ": " + text);
+  };
+  std::ofstream out(part, std::ios::binary);
+  if (!out) fail("cannot write " + what);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) fail(what + " could not be written to its end");
+  std::error_code error;
+  std::filesystem::rename(part, file, error);
+  if (error) fail("cannot write " + what + ": " + error.message());
+}
+
+std::vector<ReportResult> write_report(std::span<const ReportSource> sources, const std::filesystem::path& html) {
+  nlohmann::json data;
+  data["flights"] = nlohmann::json::array();
+  std::vector<ReportResult> results;
+  for (const ReportSource& source : sources) {
+    const FlightData flight = read_flight(source.log);
+    data["flights"].push_back(report_data(flight, source.summary ? &*source.summary : nullptr));
+    data["flights"].back()["file"] = source.log.filename().string();
+    results.push_back({flight.lines, flight.cut_off + flight.not_finite + flight.unknown});
+  }
   const std::string_view page = report_template();
   const std::size_t place = page.find(kDataPlace);
   if (place == std::string_view::npos) throw std::logic_error("template.html has no {{data}}");
   std::string text(page.substr(0, place));
   text += embeddable(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   text += page.substr(place + kDataPlace.size());
-  write_whole(html, text);
-  return {flight.lines, flight.cut_off + flight.not_finite + flight.unknown};
+  write_whole(html, text, "the flight report");
+  return results;
+}
+
+ReportResult write_report(const std::filesystem::path& log, const std::filesystem::path& html,
+                          const nlohmann::json* summary) {
+  const ReportSource source{log, summary != nullptr ? std::optional(*summary) : std::nullopt};
+  return write_report(std::span(&source, 1), html).front();
 }
 
 }  // namespace jink::tools

@@ -6,6 +6,10 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <variant>
+
+#include "sim/shapes.hpp"
+#include "tools/report/convex_hull.hpp"
 
 namespace jink::tools {
 namespace {
@@ -64,8 +68,8 @@ Json motion_json(const std::vector<MotionSample>& samples, double interval) {
   return {{"t", std::move(t)}, {"p", std::move(p)}, {"speed", std::move(speed)}};
 }
 
-/// Per frame a flat list of id, x, y, z, radius, and with velocities vx, vy, vz.
-Json frames_json(const std::vector<BodyFrame>& frames, double interval, bool velocities) {
+/// Per frame a flat list of id, x, y, z, radius, and of tracks vx, vy, vz, ax, ay, az, age.
+Json frames_json(const std::vector<BodyFrame>& frames, double interval, bool tracks) {
   if (frames.empty()) return nullptr;
   Json t = Json::array(), lists = Json::array();
   for (const std::size_t i : thin_samples(frames, interval)) {
@@ -74,43 +78,61 @@ Json frames_json(const std::vector<BodyFrame>& frames, double interval, bool vel
       list.push_back(body.id);
       append(list, body.position);
       list.push_back(millimetres(body.radius));
-      if (velocities) {
-        for (const double x : body.velocity) list.push_back(centi(x));
+      if (!tracks) continue;
+      for (const Triple& v : {body.velocity, body.acceleration}) {
+        for (const double x : v) list.push_back(centi(x));
       }
+      list.push_back(centi(body.age));
     }
     t.push_back(seconds(frames[i].t));
     lists.push_back(std::move(list));
   }
-  return {{"t", std::move(t)}, {"frames", std::move(lists)}, {"stride", velocities ? 8 : 5}};
+  return {{"t", std::move(t)}, {"frames", std::move(lists)}, {"stride", tracks ? 12 : 5}};
+}
+
+Json path_json(const std::vector<std::array<double, 4>>& points) {
+  Json path = Json::array();
+  const std::size_t step = std::max<std::size_t>(1, (points.size() + kMostPathPoints - 2) / (kMostPathPoints - 1));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % step != 0 && i + 1 != points.size()) continue;
+    const auto& [t, x, y, z] = points[i];
+    path.push_back(millimetres(t));
+    append(path, {x, y, z});
+  }
+  return path;
 }
 
 Json plans_json(const std::vector<PlanRecord>& plans) {
   Json list = Json::array();
   for (const PlanRecord& plan : plans) {
-    Json path = Json::array();
-    const std::size_t step = std::max<std::size_t>(1, (plan.path.size() + kMostPathPoints - 2) / (kMostPathPoints - 1));
-    for (std::size_t i = 0; i < plan.path.size(); ++i) {
-      if (i % step != 0 && i + 1 != plan.path.size()) continue;
-      const auto& [t, x, y, z] = plan.path[i];
-      path.push_back(millimetres(t));
-      append(path, {x, y, z});
+    Json item{{"t", seconds(plan.t)}, {"ms", centi(plan.ms)},  {"status", plan.status},
+              {"kept", plan.kept},    {"missed", plan.missed}, {"path", path_json(plan.path)}};
+    if (std::isfinite(plan.acceleration_trust)) item["trust"] = centi(plan.acceleration_trust);
+    for (const KnownPathRecord& known : plan.known_paths) {
+      item["known"].push_back(
+          {{"id", known.id}, {"radius", millimetres(known.radius)}, {"path", path_json(known.points)}});
     }
-    list.push_back({{"t", seconds(plan.t)},
-                    {"ms", centi(plan.ms)},
-                    {"status", plan.status},
-                    {"kept", plan.kept},
-                    {"missed", plan.missed},
-                    {"path", std::move(path)}});
+    list.push_back(std::move(item));
   }
   return list;
 }
 
-std::optional<double> vehicle_radius(const FlightData& flight) {
-  const auto vehicle = flight.header.find("vehicle");
-  if (vehicle == flight.header.end() || !vehicle->is_object()) return std::nullopt;
-  const auto radius = vehicle->find("radius");
-  if (radius == vehicle->end() || !radius->is_number()) return std::nullopt;
-  return radius->get<double>();
+/// By id {box: edges} or {vertices: [x, y, z, ...], faces: [i, j, k, ...]}, about the body's position.
+Json shapes_json(const std::map<std::uint64_t, config::Shape>& shapes) {
+  Json by_id = Json::object();
+  for (const auto& [id, shape] : shapes) {
+    Json& entry = by_id[std::to_string(id)];
+    if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
+      entry["box"] = {millimetres(box->edges.x()), millimetres(box->edges.y()), millimetres(box->edges.z())};
+    } else if (const auto* hull = std::get_if<config::VertexShape>(&shape)) {
+      for (const planner::Vec3& v : hull->vertices) append(entry["vertices"], {v.x(), v.y(), v.z()});
+      entry["faces"] = Json::array();
+      for (const Triangle& face : convex_hull(hull->vertices)) {
+        for (const std::size_t corner : face) entry["faces"].push_back(corner);
+      }
+    }
+  }
+  return by_id;
 }
 
 /// Thinned to the least clearance of each interval: what matters must not fall between two samples.
@@ -132,7 +154,8 @@ Json clearance_json(const std::vector<ClearanceSample>& samples, double interval
   return {{"from", from}, {"t", std::move(t)}, {"d", std::move(d)}, {"min", lowest}};
 }
 
-std::optional<double> nearest(const Triple& vehicle, double radius, const BodyFrame& frame, double ahead) {
+/// Of tracks `ahead` seconds after their time.
+std::optional<double> nearest_track(const Triple& vehicle, double radius, const BodyFrame& frame, double ahead) {
   std::optional<double> least;
   for (const Body& body : frame.bodies) {
     Triple there = body.position;
@@ -141,6 +164,38 @@ std::optional<double> nearest(const Triple& vehicle, double radius, const BodyFr
     if (!least || free < *least) least = free;
   }
   return least;
+}
+
+/// From a point to the true surface.
+double surface_distance(const FlightData& flight, const Body& body, const Triple& from) {
+  const auto shape = flight.shapes.find(body.id);
+  if (shape == flight.shapes.end()) return distance(from, body.position) - body.radius;
+  const auto vector = [](const Triple& v) { return planner::Vec3(v[0], v[1], v[2]); };
+  return sim::distance(shape->second, vector(body.position), vector(from));
+}
+
+const std::vector<MotionSample>& truth_of(const FlightData& flight, std::size_t vehicle) {
+  return vehicle == 0 ? flight.truth : flight.others[vehicle - 1].truth;
+}
+
+/// The number by which the log knows the vehicle.
+std::uint64_t number_of(const FlightData& flight, std::size_t vehicle) {
+  return vehicle == 0 ? 0 : flight.others[vehicle - 1].number;
+}
+
+/// To the nearest of the other vehicles at that very time.
+void regard_vehicles(const FlightData& flight, std::size_t own, const MotionSample& sample,
+                     std::optional<double>& least) {
+  for (std::size_t k = 0; k <= flight.others.size(); ++k) {
+    if (k == own) continue;
+    const std::vector<MotionSample>& truth = truth_of(flight, k);
+    const auto there =
+        std::lower_bound(truth.begin(), truth.end(), sample.t, [](const MotionSample& m, double t) { return m.t < t; });
+    if (there == truth.end() || there->t != sample.t) continue;
+    const double free =
+        distance(there->position, sample.position) - vehicle_radius(flight, number_of(flight, k)).value_or(0.0);
+    if (!least || free < *least) least = free;
+  }
 }
 
 /// The outcome as the log's own events tell it: `replay` names the outcome, `fly` ends with "phase" "done: OUTCOME,
@@ -201,15 +256,21 @@ std::vector<std::size_t> thin(std::span<const double> t, double interval) {
   return kept;
 }
 
-std::vector<ClearanceSample> true_clearance(const FlightData& flight) {
-  const double radius = vehicle_radius(flight).value_or(0.0);
+std::vector<ClearanceSample> true_clearance(const FlightData& flight, std::size_t vehicle) {
+  const double radius = vehicle_radius(flight, number_of(flight, vehicle)).value_or(0.0);
   std::vector<ClearanceSample> result;
   auto frame = flight.obstacles.begin();
-  for (const MotionSample& sample : flight.truth) {
+  for (const MotionSample& sample : truth_of(flight, vehicle)) {
     while (frame != flight.obstacles.end() && frame->t < sample.t) ++frame;
-    if (frame == flight.obstacles.end()) break;
-    if (frame->t != sample.t) continue;
-    if (const auto free = nearest(sample.position, radius, *frame, 0.0)) result.push_back({sample.t, *free});
+    std::optional<double> least;
+    if (frame != flight.obstacles.end() && frame->t == sample.t) {
+      for (const Body& body : frame->bodies) {
+        const double free = surface_distance(flight, body, sample.position);
+        if (!least || free < *least) least = free;
+      }
+    }
+    regard_vehicles(flight, vehicle, sample, least);
+    if (least) result.push_back({sample.t, *least - radius});
   }
   return result;
 }
@@ -223,7 +284,7 @@ std::vector<ClearanceSample> tracked_clearance(const FlightData& flight) {
     if (state == flight.states.begin()) continue;
     const MotionSample& newest = *std::prev(state);
     if (frame.t - newest.t > kOldestState) continue;
-    if (const auto free = nearest(newest.position, radius, frame, newest.t - frame.t))
+    if (const auto free = nearest_track(newest.position, radius, frame, newest.t - frame.t))
       result.push_back({newest.t, *free});
   }
   return result;
@@ -238,6 +299,7 @@ Json report_data(const FlightData& flight, const Json* summary) {
   for (const EventRecord& event : flight.events) events.push_back({seconds(event.t), event.name, event.detail});
   Json data;
   data["header"] = flight.header;
+  data["header"].erase("shapes");
   data["log"] = {{"lines", flight.lines},
                  {"cut_off", flight.cut_off},
                  {"not_finite", flight.not_finite},
@@ -248,6 +310,16 @@ Json report_data(const FlightData& flight, const Json* summary) {
   data["vehicle"]["from"] = truth ? "truth" : "state";
   const std::optional<double> radius = vehicle_radius(flight);
   data["vehicle"]["radius"] = radius ? Json(*radius) : Json();
+  data["others"] = Json::array();
+  for (std::size_t k = 1; k <= flight.others.size(); ++k) {
+    Json other = motion_json(flight.others[k - 1].truth, interval);
+    const std::optional<double> size = vehicle_radius(flight, flight.others[k - 1].number);
+    other["number"] = flight.others[k - 1].number;
+    other["radius"] = size ? Json(*size) : Json();
+    other["clearance"] = clearance_json(true_clearance(flight, k), interval, "true");
+    data["others"].push_back(std::move(other));
+  }
+  data["shapes"] = shapes_json(flight.shapes);
   data["setpoints"] = motion_json(flight.setpoints, interval);
   data["obstacles"] = frames_json(flight.obstacles, interval, false);
   data["tracks"] = frames_json(flight.tracks, interval, true);

@@ -22,8 +22,10 @@ struct ClearanceSample {
 /// are `interval` or more after the last one kept.
 std::vector<std::size_t> thin(std::span<const double> t, double interval);
 
-/// From true positions of vehicle and obstacles at equal times; empty where the log has none.
-std::vector<ClearanceSample> true_clearance(const FlightData& flight);
+/// From true positions of vehicle and obstacles at equal times, to the obstacles' true shapes and to other vehicles;
+/// empty where the log has none. `vehicle` 0 is the log's own, k the k-th of FlightData::others. Within a hull of
+/// vertices the distance to its surface counts as 0.
+std::vector<ClearanceSample> true_clearance(const FlightData& flight, std::size_t vehicle = 0);
 
 /// From the vehicle's estimate and the tracks, each track moved by its velocity to the time of the newest estimate;
 /// empty where the log lacks one of the two.

@@ -1,6 +1,7 @@
 // The camera, and lines and labels in its view: a small perspective renderer on a 2D canvas. Whatever can hide
 // something else is collected with its depth and drawn from far to near.
 const kNear = 0.15;   // m, nearest depth that is drawn
+const kFarthest = 1e5;  // m, beyond which nothing need be in view
 const kFocal = 3.2;   // focal length over half the canvas height: a mild perspective
 
 class Camera {
@@ -12,7 +13,7 @@ class Camera {
 
   /** From the side of the way from start to target, a little behind and above: it then runs across the picture. */
   aside() {
-    const {start, target} = flight.header;
+    const {start, target} = flights[0].header;
     const way = isTriple(start) && isTriple(target) ? [target[0] - start[0], target[1] - start[1]] : [1, 0];
     return [Math.atan2(-way[1], way[0]) + 0.4, 0.42];
   }
@@ -99,21 +100,25 @@ class Camera {
 }
 
 /** The flight volume, null where the log has none. */
-function flightVolume() {
+function flightVolume(flight) {
   const world = flight.header.world;
   return world && isTriple(world.min) && isTriple(world.max) ? world : null;
 }
 
-/** What must be in view at first: the path, start and target, and the air around them. The ground below it is drawn. */
+/** What must be in view at first: the paths, starts and targets, and the air around them. The ground below is drawn. */
 function sceneBounds() {
   const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
-  const include = (p) => p.forEach((x, k) => {
+  const include = (p) => p.map((x) => clamp(x, -kFarthest, kFarthest)).forEach((x, k) => {
     min[k] = Math.min(min[k], x);
     max[k] = Math.max(max[k], x);
   });
-  for (let i = 0; i < flight.vehicle.t.length; ++i) include(point(flight.vehicle.p, i));
-  for (const key of ["start", "target"]) if (isTriple(flight.header[key])) include(flight.header[key]);
-  const world = flightVolume() || {min: [-5, -5, 0], max: [5, 5, 3]};
+  for (const flight of flights) {
+    for (const series of [flight.vehicle, ...flight.others]) {
+      for (let i = 0; i < series.t.length; ++i) include(point(series.p, i));
+    }
+    for (const key of ["start", "target"]) if (isTriple(flight.header[key])) include(flight.header[key]);
+  }
+  const world = flightVolume(flights[0]) || {min: [-5, -5, 0], max: [5, 5, 3]};
   if (!isNumber(min[0])) {
     include(world.min);
     include(world.max);
@@ -156,10 +161,10 @@ function label(ctx, camera, p, text, color, dx = 0, dy = 0, align = "center") {
 
 /** The ground: a grid with metre labels on the edges towards the camera, and heights on the corner away from both. */
 class Ground {
-  constructor(bounds) {
-    this.world = flightVolume();
+  constructor(bounds, world) {
+    this.world = world;
     const extent = Math.max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
-    this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((s) => extent / s <= 16) || 2000;
+    this.step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000].find((s) => extent / s <= 16) || 20000;
     this.min = [0, 1].map((k) => Math.floor(bounds.min[k] / this.step + 1e-9) * this.step);
     this.max = [0, 1].map((k) => Math.ceil(bounds.max[k] / this.step - 1e-9) * this.step);
     this.top = Math.ceil(bounds.max[2]);
@@ -173,7 +178,7 @@ class Ground {
     for (const k of [0, 1]) {
       for (let x = this.min[k]; x <= this.max[k] + 1e-9; x += this.step) {
         const end = (limits) => (k === 0 ? [x, limits[1], 0] : [limits[0], x, 0]);
-        line(ctx, camera, end(this.min), end(this.max), x === 0 ? "#aeb9c4" : "#e4e8ed", 1);
+        line(ctx, camera, end(this.min), end(this.max), x === 0 ? "#aeb9c4" : "#dde3e9", 1);
       }
     }
     if (this.world) this.drawVolume(ctx, camera);
@@ -196,10 +201,10 @@ class Ground {
     const off = 0.35 * this.step;
     const [outX, outY] = [x === this.min[0] ? x - off : x + off, y === this.min[1] ? y - off : y + off];
     for (let e = this.min[0]; e <= this.max[0] + 1e-9; e += this.step) {
-      label(ctx, camera, [e, outY, 0], String(e), "#7b8794");
+      label(ctx, camera, [e, outY, 0], String(e), "#56626f");
     }
     for (let n = this.min[1]; n <= this.max[1] + 1e-9; n += this.step) {
-      label(ctx, camera, [outX, n, 0], String(n), "#7b8794");
+      label(ctx, camera, [outX, n, 0], String(n), "#56626f");
     }
     label(ctx, camera, [this.max[0] + 0.8 * this.step, outY, 0], "E, m", "#45525f");
     label(ctx, camera, [outX, this.max[1] + 0.8 * this.step, 0], "N, m", "#45525f");
@@ -208,7 +213,7 @@ class Ground {
     line(ctx, camera, [c[0], c[1], 0], [c[0], c[1], this.top], "#aeb9c4", 1);
     const rise = this.top > 40 ? 10 : this.top > 12 ? 5 : this.top > 5 ? 2 : 1;
     for (let u = rise; u <= this.top; u += rise) {
-      label(ctx, camera, [c[0], c[1], u], String(u), "#7b8794", -8, 0, "right");
+      label(ctx, camera, [c[0], c[1], u], String(u), "#56626f", -8, 0, "right");
     }
     label(ctx, camera, [c[0], c[1], this.top], "U, m", "#45525f", 0, -12);
   }

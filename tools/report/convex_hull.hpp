@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The convex hull of a few points as triangles: for drawing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "planner/types.hpp"
+
+namespace jink::tools {
+
+using Triangle = std::array<std::size_t, 3>;
+
+/// Triangles over indices into `points` that cover the surface of their convex hull, counter-clockwise seen from
+/// outside. Of points in one plane both faces; of points on one line one triangle whose last two corners are the same,
+/// of a single point one with all three the same: whoever draws edges and corners misses nothing. Requires at least one
+/// point, all finite. Points within 1e-9 of the set's size of a face are taken as on it. O(n f) for f faces.
+std::vector<Triangle> convex_hull(std::span<const planner::Vec3> points);
+
+}  // namespace jink::tools

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flight as one figure for print.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "tools/report/report.hpp"
+
+namespace jink::tools {
+
+/// The figure's width; its height follows from the flight's proportions.
+constexpr double kFigureWidth_mm = 180.0;
+constexpr double kFigureResolution_dpi = 300.0;
+
+/// What the figure is drawn with, "#rrggbb": the colours of Okabe and Ito, those of the page.
+struct FigureColors {
+  static constexpr std::string_view kFlown = "#0072b2", kPlan = "#009e73", kBlocked = "#d55e00", kObstacle = "#d9a441",
+                                    kTrack = "#a8478a", kOther = "#3f9bd1", kLeast = "#c03a00";
+};
+
+/// Reads the flight log and draws as a PNG `file`, whole or not at all: the view from above and from the side (in
+/// metres, equal scales) with the flown path, the obstacles' true shapes and ways, the plan and the tracks' predictions
+/// as they were at the instant `at` (s of the log; the least clearance's where it is not given), and below them
+/// clearance, speed, height and plan time over time with the events that matter. Throws std::runtime_error as
+/// write_report() does, and for an instant outside the log.
+ReportResult write_figure(const ReportSource& source, const std::filesystem::path& file,
+                          std::optional<double> at = std::nullopt);
+
+}  // namespace jink::tools
