@@ -56,13 +56,13 @@ TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
   const LinearMotion linear{awkward_vector(1), awkward_vector(2), awkward_vector(3)};
   const BounceMotion bounce{{0.5, 0, 1e-300}, awkward_vector(4), {0, -1, 0}, {1, 1, 1}};
   const SineMotion sine{awkward_vector(5), awkward_vector(6), {0, 1.0 / 3.0, 7}, awkward_vector(7)};
-  scenario.obstacles = {
-      {SphereShape{awkward(1)}, linear},
-      {BoxShape{{awkward(1), awkward(2), 3}}, TrefoilMotion{awkward_vector(1), awkward_vector(2), 1.1, -std::numbers::pi}},
-      {VertexShape{{awkward_vector(1), awkward_vector(2)}}, sine},
-      {SphereShape{12345678.0 / 1e5}, bounce},
-      {SphereShape{1}, WaypointsMotion{{0, awkward(3)}, {awkward_vector(8), awkward_vector(9)}}},
-      {SphereShape{1}, LinearMotion{{1, 2, -0.0}, {-0.0, 0, 0}}}};
+  scenario.obstacles = {{SphereShape{awkward(1)}, linear},
+                        {BoxShape{{awkward(1), awkward(2), 3}},
+                         TrefoilMotion{awkward_vector(1), awkward_vector(2), 1.1, -std::numbers::pi}},
+                        {VertexShape{{awkward_vector(1), awkward_vector(2)}}, sine},
+                        {SphereShape{12345678.0 / 1e5}, bounce},
+                        {SphereShape{1}, WaypointsMotion{{0, awkward(3)}, {awkward_vector(8), awkward_vector(9)}}},
+                        {SphereShape{1}, LinearMotion{{1, 2, -0.0}, {-0.0, 0, 0}}}};
   const Scenario again = read_back(scenario);
   expect_same(scenario, again);
   const auto& last = std::get<LinearMotion>(again.obstacles.back().motion);

@@ -78,6 +78,21 @@ TEST(MaderCorridor, IsAsPublished) {
   }
 }
 
+// One that swings there for ever would make it a world that nobody can solve.
+TEST(MaderCorridor, NobodyStaysAtTheGoal) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const config::Scenario scenario = make_world("mader_250", seed);
+    for (const config::Obstacle& obstacle : scenario.obstacles) {
+      config::Scenario alone = scenario;
+      alone.obstacles = {obstacle};
+      const World world(alone);
+      double farthest = -1.0;
+      for (double t = 0; t < 10; t += 0.1) farthest = std::max(farthest, world.clearance(scenario.target, t));
+      EXPECT_GT(farthest, 0.9) << seed;
+    }
+  }
+}
+
 // 5.3 m/s: hypot(5, 3) / 1.1.
 TEST(MaderCorridor, MoversPeakAtThePublishedSpeed) {
   double fastest = 0.0;
