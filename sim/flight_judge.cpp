@@ -12,11 +12,15 @@ std::string at_time(double t) {
   return " at t = " + std::to_string(t) + " s";
 }
 
-/// The flight of all: the first vehicle's figures under that outcome, with the reasons of those that it befell.
+/// The flight of all: the first vehicle's figures under that outcome, with the reasons of those that it befell, once
+/// where it is the same for all.
 void sum_up(bridge::Outcome outcome, ClosedLoopResult& result) {
   result.flight = result.vehicles.front().flight;
-  if (result.vehicles.size() == 1) return;
+  const auto as_first = [&](const VehicleReport& report) {
+    return report.flight.outcome == outcome && report.flight.reason == result.flight.reason;
+  };
   result.flight.outcome = outcome;
+  if (std::all_of(result.vehicles.begin(), result.vehicles.end(), as_first)) return;
   result.flight.reason.clear();
   for (std::size_t k = 0; k < result.vehicles.size(); ++k) {
     const bridge::FlightSummary& flight = result.vehicles[k].flight;

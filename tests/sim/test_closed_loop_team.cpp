@@ -63,6 +63,7 @@ TEST(ClosedLoopTeam, TwoSwapPlacesAndAreJudgedTogether) {
   Watch watch;
   const ClosedLoopResult result = fly(swapping(), watch);
   EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  EXPECT_EQ(result.flight.reason, "target reached");
   ASSERT_EQ(result.vehicles.size(), 2U);
   for (const VehicleReport& vehicle : result.vehicles) {
     EXPECT_EQ(vehicle.flight.outcome, bridge::Outcome::kReached);
