@@ -48,12 +48,6 @@ int replay_scenario(const ReplayOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
-  if (!scenario.vehicles.empty()) {
-    throw UsageError(options.scenario +
-                     ": key 'vehicles': replay flies one vehicle; fly several with jink sim and one " +
-                     "jink fly for each");
-  }
-
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
@@ -76,8 +70,8 @@ int replay_scenario(const ReplayOptions& options) {
   if (log) log->close();
   background.reset();
 
-  const auto summary =
-      flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
+  auto summary = flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
+  if (result.vehicles.size() > 1) summary["vehicles"] = vehicles_json(result.vehicles, 1);
   write_json(options.common.json, summary);
   printer.line(describe_flight(summary));
   if (!options.report.empty()) {
@@ -187,10 +181,12 @@ int run(const ReplayOptions& options) {
 }  // namespace
 
 Subcommand add_replay(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
-      "replay",
-      "fly a scenario closed loop in virtual time: bit-identical for the same seed, at any thread count; or, given a\n"
-      "flight log, make its plans again from what they were made from and say which differ");
+  CLI::App* app =
+      jink.add_subcommand("replay",
+                          "fly a scenario closed loop in virtual time, all of its vehicles: bit-identical for the same "
+                          "seed, at any thread\n"
+                          "count; or, given a "
+                          "flight log, make its plans again from what they were made from and say which differ");
   const auto options = std::make_shared<ReplayOptions>();
   app->add_option("SCENARIO|FLIGHT.jsonl", options->scenario, "scenario file, or flight log of `replay` or `fly`")
       ->required();

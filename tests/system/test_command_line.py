@@ -161,6 +161,26 @@ def same_bits(jink, folder):
     check(len(flights) == 1, "replay: summary and log the same bytes with 1, 2 and 8 threads")
 
 
+def team_flight(jink, folder):
+    """A scenario with several vehicles: all fly, the log is the first one's with the truth of all, and it plans again."""
+    scenario = folder / "team.yaml"
+    scenario.write_text(yaml.safe_dump({
+        "format": "jink-scenario/1", "name": "team", "start": [0, 0, 3], "target": [12, 0, 3], "vehicle": "ardrone2",
+        "obstacles": [], "vehicles": [{"start": [12, 0, 3], "target": [0, 0, 3]}]}))
+    log = folder / "team.jsonl"
+    flight = jink.summary("replay", scenario, "--log", log)
+    check(flight["outcome"] == "reached" and 0 < flight["min_clearance"] < 3, f"two swap places, {flight['min_clearance']:.2f} m apart")
+    check([v["vehicle"] for v in flight["vehicles"]] == [0, 1] and [v["system"] for v in flight["vehicles"]] == [1, 2], "both are told of")
+    check(all(v["outcome"] == "reached" for v in flight["vehicles"]), "both reached")
+    records = [json.loads(line) for line in log.read_text().splitlines()]
+    starts = {r["vehicle"]: r["p"] for r in records if r["type"] == "truth" and r["t"] == 0}
+    check(starts == {0: [0, 0, 3], 1: [12, 0, 3]}, f"truth of both: {starts}")
+    states = [r["p"] for r in records if r["type"] == "state"]
+    check(math.dist(states[0], [0, 0, 3]) < 0.5 and math.dist(states[-1], [12, 0, 3]) < 0.6, "the log is vehicle 0's")
+    again = jink.summary("replay", log)
+    check(again["plans"] == flight["plans"] and again["differ"] == 0, f"{again['plans']} plans, {again['differ']} differ")
+
+
 def recorded_flight(jink, folder):
     """A flight log is planned again: no difference from its own parameters, some from others, one line where it is bad."""
     log = folder / "recorded.jsonl"
@@ -213,7 +233,7 @@ def test(program):
         for case in (bad_usage, help_reads, plans, paper_slr):
             print(f"== {case.__name__}", flush=True)
             case(jink)
-        for case in (bad_values, same_bits, recorded_flight, outcomes):
+        for case in (bad_values, same_bits, team_flight, recorded_flight, outcomes):
             print(f"== {case.__name__}", flush=True)
             case(jink, folder)
 
