@@ -14,6 +14,7 @@ namespace {
 constexpr double kShort = 1e-9;        // m, m/s
 constexpr double kUndisturbed = 1e-6;  // m/s
 constexpr double kToTheRight = 0.1;    // of the wished velocity
+constexpr double kSlow = 0.3;          // of it
 
 /// A direction square to the unit vector `axis`: of `wished` where that has one, else level, else north.
 Vec3 square_to(const Vec3& axis, const Vec3& wished) {
@@ -91,8 +92,9 @@ planner::Plan OrcaPilot::plan(const bridge::PlanJob& job) {
     return least_violating_velocity(hard, half_spaces, request.vehicle.max_speed, velocity);
   };
   Vec3 chosen = nearest_to(wished);
-  // Exactly head on, both would only slow down: whoever is disturbed keeps to the right.
-  if ((chosen - wished).norm() >= kUndisturbed) chosen = nearest_to(wished + kToTheRight * wished.cross(Vec3::UnitZ()));
+  // Exactly head on, ORCA only slows down: what nearly stands keeps to the right.
+  if ((chosen - wished).norm() >= kUndisturbed && chosen.norm() < kSlow * wished.norm())
+    chosen = nearest_to(wished + kToTheRight * wished.cross(Vec3::UnitZ()));
 
   Motion motion(request, settings_, urgent ? hardest_acceleration(request, settings_) : normal);
   if ((chosen - wished).norm() < kUndisturbed) {

@@ -2,6 +2,8 @@
 #include "tools/arena/paper_pilot.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "planner/paper_planner.hpp"
 #include "planner/random.hpp"
@@ -36,10 +38,20 @@ planner::Plan PaperPilot::plan(const bridge::PlanJob& job) {
   asked.seed = planner::RandomStream(settings_.seed, kPaperStream, job.number).next();
   const planner::Plan wished = planner::plan_paper(asked, optimizer_, pool_);
 
-  Motion motion(request, settings_.horizon, normal_acceleration(request, settings_.horizon));
-  motion.follow(wished.path);
-  motion.fly_to_target();
-  planner::Plan plan = judged(motion.path(), request, settings_.horizon.time);
+  const auto flown = [&](double acceleration) {
+    Motion motion(request, settings_.horizon, acceleration);
+    motion.follow(wished.path);
+    motion.fly_to_target();
+    return judged(motion.path(), request, settings_.horizon.time);
+  };
+  planner::Plan plan = flown(normal_acceleration(request, settings_.horizon));
+  if (!plan.verification.free()) {
+    planner::Plan harder = flown(hardest_acceleration(request, settings_.horizon));
+    if (less_harm(harder.verification, plan.verification)) {
+      plan = std::move(harder);
+      plan.emergency = true;
+    }
+  }
   plan.evaluations = wished.evaluations;
   plan.schedule = wished.schedule;
   plan.generations = wished.generations;

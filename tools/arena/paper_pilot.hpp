@@ -14,7 +14,8 @@ namespace jink::arena {
 /// the paper mode's own.
 ///
 /// differs: the paper's vehicle is on its path without delay. This one follows the waypoints' timed polyline with its
-/// limits of speed and acceleration, and it is that motion which is judged.
+/// limits of speed and acceleration, and it is that motion which is judged; where it is not free, the motion with more
+/// acceleration is taken if that does less harm.
 class PaperPilot final : public Rival {
  public:
   PaperPilot(const bridge::PlannerTaskSettings& settings, const planner::PaperSettings& paper);
