@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "pilot_testing.hpp"
 #include "sim/closed_loop.hpp"
 #include "tools/arena/paper_pilot.hpp"
 #include "tools/arena/rival.hpp"
@@ -194,6 +195,19 @@ TEST(RrtPilot, FliesPastWhatStandsAndWhatComes) {
   const config::Scenario scenario = straight({sphere(0.5, {4, 0, 1.5}), sphere(0.4, {16, 0.1, 1.5}, {-1.5, 0, 0})});
   const sim::ClosedLoopResult result = fly("rrt_star", scenario, settings());
   EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+}
+
+TEST(PaperPilot, KeepsItsPathWhileThatKeepsTheMarginAndNoLonger) {
+  PaperPilot pilot({}, {});
+  bridge::PlanJob asked = job({0, 0, 2}, {12, 0, 2}, {ball(0.5, {6, 0.1, 2})});
+  asked.previous = plan(pilot, asked).path;
+  ++asked.number;
+  const planner::Plan kept = plan(pilot, asked);
+  EXPECT_TRUE(kept.kept_previous);
+  EXPECT_EQ(kept.status, planner::PlanStatus::kReaches);
+  const Vec3 met = planner::sample(asked.previous, 3.0).position;
+  asked.tracks.push_back(ball(0.5, met));
+  EXPECT_FALSE(plan(pilot, asked).kept_previous);
 }
 
 TEST(PaperPilot, FliesTheFirstScenarioOfThePaper) {
