@@ -131,9 +131,12 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
   Autopilot autopilot(vehicle_of(scenario, options.seed));
   VirtualLink link(autopilot, options.seed);
   VirtualTracks tracks(world, timeline, options.seed);
-  bridge::VirtualPlanner planner({settings.horizon, settings.optimizer, options.seed, options.threads},
-                                 1e-3 * settings.companion.planner_latency_ms);
-  bridge::Companion companion(mission_of(scenario), settings, {link, tracks, planner, options.flight_observers});
+  const bridge::PlannerTaskSettings planning{settings.horizon, settings.optimizer, options.seed, options.threads};
+  const double latency = 1e-3 * settings.companion.planner_latency_ms;
+  const std::unique_ptr<bridge::PlannerTask> planner =
+      options.planner ? options.planner(planning, latency)
+                      : std::make_unique<bridge::VirtualPlanner>(planning, latency);
+  bridge::Companion companion(mission_of(scenario), settings, {link, tracks, *planner, options.flight_observers});
 
   FlightJudge judge(world, result);
   const int steps_per_turn =

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "bridge/companion.hpp"
+#include "bridge/planner_task.hpp"
 #include "config/scenario.hpp"
 #include "config/settings.hpp"
 #include "sim/truth.hpp"
@@ -19,6 +22,8 @@ struct ClosedLoopOptions {
   int threads = 0;  ///< of the planner; 0: one for each core
   std::vector<bridge::FlightObserver*> flight_observers;
   std::vector<TruthObserver*> truth_observers;
+  /// Makes the planner of the flight; empty: jink's own (VirtualPlanner).
+  std::function<std::unique_ptr<bridge::PlannerTask>(const bridge::PlannerTaskSettings&, double latency)> planner;
 };
 
 /// What happened, judged by the true motion.
