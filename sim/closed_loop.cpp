@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "sim/autopilot.hpp"
@@ -97,6 +98,13 @@ void befall(double t, FaultTimeline& timeline, Autopilot& autopilot, VirtualLink
   if (!changes.empty()) link.impair(timeline.link(0));
 }
 
+std::unique_ptr<bridge::PlannerTask> make_planner(const config::Settings& settings, const ClosedLoopOptions& options) {
+  const bridge::PlannerTaskSettings task{settings.horizon, settings.optimizer, options.seed, options.threads};
+  const double latency = 1e-3 * settings.companion.planner_latency_ms;
+  if (options.planner) return options.planner(task, latency);
+  return std::make_unique<bridge::VirtualPlanner>(task, latency);
+}
+
 /// The companion's summary with the truth's figures in place of those that it could only estimate.
 void complete(ClosedLoopResult& result, const bridge::FlightSummary& seen, bridge::Outcome ended, double max_speed,
               const std::vector<bridge::FlightObserver*>& observers) {
@@ -131,11 +139,7 @@ ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config:
   Autopilot autopilot(vehicle_of(scenario, options.seed));
   VirtualLink link(autopilot, options.seed);
   VirtualTracks tracks(world, timeline, options.seed);
-  const bridge::PlannerTaskSettings planning{settings.horizon, settings.optimizer, options.seed, options.threads};
-  const double latency = 1e-3 * settings.companion.planner_latency_ms;
-  const std::unique_ptr<bridge::PlannerTask> planner =
-      options.planner ? options.planner(planning, latency)
-                      : std::make_unique<bridge::VirtualPlanner>(planning, latency);
+  const std::unique_ptr<bridge::PlannerTask> planner = make_planner(settings, options);
   bridge::Companion companion(mission_of(scenario), settings, {link, tracks, *planner, options.flight_observers});
 
   FlightJudge judge(world, result);

@@ -22,8 +22,8 @@ struct ClosedLoopOptions {
   int threads = 0;  ///< of the planner; 0: one for each core
   std::vector<bridge::FlightObserver*> flight_observers;
   std::vector<TruthObserver*> truth_observers;
-  /// Makes the planner of the flight; empty: jink's own (VirtualPlanner).
-  std::function<std::unique_ptr<bridge::PlannerTask>(const bridge::PlannerTaskSettings&, double latency)> planner;
+  /// Makes the planner of the flight, from its settings and the latency in s; empty: jink's own (VirtualPlanner).
+  std::function<std::unique_ptr<bridge::PlannerTask>(const bridge::PlannerTaskSettings&, double)> planner;
 };
 
 /// What happened, judged by the true motion.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "sim/world.hpp"
 #include "sim/world_families_impl.hpp"
@@ -129,11 +130,26 @@ Vec3 random_offset(RandomStream& random, double radius) {
 
 namespace {
 
+using Build = void (*)(config::Scenario&, planner::RandomStream&);
+
 struct Family {
   std::string_view name;
   bool linear;
-  void (*build)(config::Scenario&, planner::RandomStream&);
+  Build build;
+  bool blocked = true;
 };
+
+template <int count>
+void build_mader(config::Scenario& scenario, planner::RandomStream& random) {
+  families::build_mader(scenario, random, count);
+}
+
+template <int count>
+void build_sando(config::Scenario& scenario, planner::RandomStream& random) {
+  families::build_sando(scenario, random, count);
+}
+
+// The place in the list is the random stream: new ones go to the end, so that the worlds of the others stay.
 
 constexpr std::array kFamilies = {Family{"crossing", true, families::build_crossing},
                                   Family{"head_on", true, families::build_head_on},
@@ -147,7 +163,19 @@ constexpr std::array kFamilies = {Family{"crossing", true, families::build_cross
                                   Family{"target_occupied", false, families::build_target_occupied},
                                   Family{"crowd", false, families::build_crowd},
                                   Family{"turning", false, families::build_turning},
-                                  Family{"cloud", false, families::build_cloud}};
+                                  Family{"cloud", false, families::build_cloud},
+                                  Family{"late", true, families::build_late},
+                                  Family{"odd", true, families::build_odd},
+                                  Family{"daidalus_head_on", true, families::build_daidalus_head_on},
+                                  Family{"daidalus_crossing", true, families::build_daidalus_crossing},
+                                  Family{"daidalus_overtaking", true, families::build_daidalus_overtaking},
+                                  Family{"antipodal", false, families::build_antipodal},
+                                  Family{"mader_50", false, build_mader<50>, false},
+                                  Family{"mader_100", false, build_mader<100>, false},
+                                  Family{"mader_250", false, build_mader<250>, false},
+                                  Family{"sando_50", false, build_sando<50>, false},
+                                  Family{"sando_100", false, build_sando<100>, false},
+                                  Family{"sando_200", false, build_sando<200>, false}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFamilies.size()> names;
@@ -155,16 +183,45 @@ constexpr auto kNames = [] {
   return names;
 }();
 
+const Family* find_family(std::string_view name) {
+  const auto* found =
+      std::find_if(kFamilies.begin(), kFamilies.end(), [&](const Family& known) { return known.name == name; });
+  return found == kFamilies.end() ? nullptr : found;
+}
+
 // Each piece of the flight is taken for a straight way at constant speed: off by kStraightAcceleration · kStep² / 8.
 bool hits_straight(const World& world) {
   constexpr double kStep = 0.05;  // s
-  const families::Mission mission = families::mission_of(world.scenario());
-  for (double t = 0.0; t < mission.duration(); t += kStep) {
-    const Vec3 from = mission.at(mission.along(t));
-    const Vec3 to = mission.at(mission.along(t + kStep));
-    if (world.sweep(from, t, to, t + kStep).min_clearance < -kStraightOverlap - 1e-3) return true;
+  const auto hit = [](const SweepResult& nearest) { return nearest.min_clearance < -kStraightOverlap - 1e-3; };
+  const std::vector<config::ScenarioVehicle> team = config::all_vehicles(world.scenario());
+  std::vector<families::Mission> missions;
+  for (const config::ScenarioVehicle& vehicle : team)
+    missions.emplace_back(vehicle.start, vehicle.target, vehicle.vehicle);
+  const auto way = [&](std::size_t k, double t) {
+    return SphereWay{missions[k].at(missions[k].along(t)), missions[k].at(missions[k].along(t + kStep)),
+                     team[k].vehicle.radius};
+  };
+  for (double t = 0.0; t < missions.front().duration(); t += kStep) {
+    const SphereWay own = way(0, t);
+    if (hit(world.sweep(own.from, t, own.to, t + kStep))) return true;
+    for (std::size_t k = 1; k < team.size(); ++k) {
+      if (hit(sweep(own, way(k, t), t, t + kStep))) return true;
+    }
   }
   return false;
+}
+
+/// Of all vehicles, from the obstacles and from each other.
+bool starts_are_clear(const World& world) {
+  const std::vector<config::ScenarioVehicle> team = config::all_vehicles(world.scenario());
+  for (std::size_t k = 0; k < team.size(); ++k) {
+    if (world.clearance(team[k].start, 0.0, team[k].vehicle.radius) < kStartClearance) return false;
+    for (std::size_t j = 0; j < k; ++j) {
+      const double apart = (team[k].start - team[j].start).norm() - team[k].vehicle.radius - team[j].vehicle.radius;
+      if (apart < kStartClearance) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -174,28 +231,51 @@ std::span<const std::string_view> world_families() {
 }
 
 bool is_linear(std::string_view family) {
-  return std::any_of(kFamilies.begin(), kFamilies.end(),
-                     [&](const Family& known) { return known.linear && known.name == family; });
+  const Family* known = find_family(family);
+  return known != nullptr && known->linear;
+}
+
+bool blocks_straight_line(std::string_view family) {
+  const Family* known = find_family(family);
+  return known != nullptr && known->blocked;
 }
 
 // The builders aim to block the line and to leave the start free. Where a draw fails in that, the next one is taken.
 config::Scenario make_world(std::string_view family, std::uint64_t seed) {
   constexpr std::uint64_t kMostAttempts = 1000;
-  const auto* known = std::find_if(kFamilies.begin(), kFamilies.end(),
-                                   [&](const Family& candidate) { return candidate.name == family; });
-  if (known == kFamilies.end()) throw std::invalid_argument("unknown world family: " + std::string(family));
-  const auto stream = static_cast<std::uint64_t>(known - kFamilies.begin());
+  const Family* known = find_family(family);
+  if (known == nullptr) throw std::invalid_argument("unknown world family: " + std::string(family));
+  const auto stream = static_cast<std::uint64_t>(known - kFamilies.data());
   for (std::uint64_t attempt = 0; attempt < kMostAttempts; ++attempt) {
     planner::RandomStream random(seed, stream, attempt);
     config::Scenario scenario;
     scenario.name = std::string(family) + "-" + std::to_string(seed);
     scenario.vehicle_name = "ardrone2";
     known->build(scenario, random);
-    scenario.time_limit = 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
+    if (scenario.time_limit == 0.0)
+      scenario.time_limit = 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
     const World world(scenario);
-    if (world.clearance(scenario.start, 0.0) >= kStartClearance && hits_straight(world)) return scenario;
+    if (starts_are_clear(world) && (!known->blocked || hits_straight(world))) return scenario;
   }
   throw std::logic_error("no world of the family " + std::string(family) + " for seed " + std::to_string(seed));
+}
+
+std::string_view to_string(Tier tier) {
+  return tier == Tier::kPerfect ? "perfect" : "realistic";
+}
+
+void set_tier(config::Scenario& scenario, Tier tier) {
+  config::Sensing sensing;
+  if (tier == Tier::kRealistic) {
+    sensing.range = 12.0;
+    sensing.rate = 20.0;
+    sensing.delay = 0.1;
+    sensing.position_noise = 0.1;
+    sensing.velocity_noise = 0.3;
+    sensing.dropout = 0.05;
+  }
+  sensing.range = std::min(sensing.range, scenario.sensing.range);
+  scenario.sensing = sensing;
 }
 
 }  // namespace jink::sim

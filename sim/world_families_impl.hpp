@@ -103,5 +103,13 @@ void build_target_occupied(config::Scenario& scenario, RandomStream& random);
 void build_crowd(config::Scenario& scenario, RandomStream& random);
 void build_turning(config::Scenario& scenario, RandomStream& random);
 void build_cloud(config::Scenario& scenario, RandomStream& random);
+void build_late(config::Scenario& scenario, RandomStream& random);
+void build_odd(config::Scenario& scenario, RandomStream& random);
+void build_daidalus_head_on(config::Scenario& scenario, RandomStream& random);
+void build_daidalus_crossing(config::Scenario& scenario, RandomStream& random);
+void build_daidalus_overtaking(config::Scenario& scenario, RandomStream& random);
+void build_mader(config::Scenario& scenario, RandomStream& random, int count);
+void build_sando(config::Scenario& scenario, RandomStream& random, int count);
+void build_antipodal(config::Scenario& scenario, RandomStream& random);
 
 }  // namespace jink::sim::families
