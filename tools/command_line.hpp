@@ -109,5 +109,6 @@ Subcommand add_sim(CLI::App& jink);
 Subcommand add_fly(CLI::App& jink);
 Subcommand add_doctor(CLI::App& jink);
 Subcommand add_report(CLI::App& jink);
+Subcommand add_arena(CLI::App& jink);
 
 }  // namespace jink::tools

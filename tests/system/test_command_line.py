@@ -88,7 +88,7 @@ def bad_values(jink, folder):
 
 
 def help_reads(jink):
-    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"]):
+    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"], ["arena"]):
         done = jink.run(*command, "--help")
         check(done.returncode == 0 and "Usage: jink" in done.stdout and not done.stderr, f"jink {' '.join(command)} --help")
 

@@ -48,8 +48,9 @@ const std::string* find(const std::vector<config::SettingText>& all, const std::
 
 }  // namespace
 
-std::string Job::name() const {
-  return fmt::format("{}-{}-{}-{}", world.family, world.seed, tier, pilot);
+std::string flight_name(const std::string& family, std::uint64_t seed, const std::string& tier,
+                        const std::string& pilot) {
+  return fmt::format("{}-{}-{}-{}", family, seed, tier, pilot);
 }
 
 std::uint64_t world_seed(std::uint64_t seed, std::string_view family, int run) {

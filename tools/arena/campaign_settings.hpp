@@ -37,14 +37,17 @@ struct World {
   std::uint64_t seed = 0;  ///< of the world, and of sensing and planner in it
 };
 
+/// "crossing-1234-realistic-jink": names a flight, and the folder of a failed one.
+[[nodiscard]] std::string flight_name(const std::string& family, std::uint64_t seed, const std::string& tier,
+                                      const std::string& pilot);
+
 /// One flight.
 struct Job {
   std::size_t number = 0;  ///< in the whole campaign: the order of all tables
   World world;
   std::string tier, pilot;
 
-  /// "crossing-1234-realistic-jink": of the folder of a failed flight.
-  [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::string name() const { return flight_name(world.family, world.seed, tier, pilot); }
 };
 
 /// The seed of a family's world: below 2^32, and another one for each of up to 2^32 runs. A function of the three
