@@ -165,8 +165,7 @@ std::string Fault::text() const {
     if (key == "count") say(key, count);
     if (key == "offset") say(key, offset);
     if (key == "remaining") say(key, remaining);
-    if (key == "by")
-      text += ", by [" + number_text(by.x()) + ", " + number_text(by.y()) + ", " + number_text(by.z()) + "]";
+    if (key == "by") text += ", by " + vector_text(by);
     if (key == "mode") text += ", " + std::string(kModes.at(static_cast<std::size_t>(mode)));
     if (key == "direction" && direction != LinkDirection::kBoth)
       text += ", " + std::string(kDirections.at(static_cast<std::size_t>(direction)));
@@ -174,6 +173,28 @@ std::string Fault::text() const {
   if (duration) text += ", for " + number_text(*duration) + " s";
   if (vehicle) text += ", vehicle " + std::to_string(*vehicle);
   return text;
+}
+
+std::string fault_text(const Fault& fault) {
+  std::string text = "{at: " + number_text(fault.at) + ", kind: " + std::string(to_string(fault.kind));
+  const auto add = [&](std::string_view key, const std::string& value) {
+    text.append(", ").append(key).append(": ").append(value);
+  };
+  if (fault.duration) add("for", number_text(*fault.duration));
+  if (fault.vehicle) add("vehicle", std::to_string(*fault.vehicle));
+  for (const std::string_view key : kind_of(fault.kind).keys) {
+    if (key == "direction") add(key, std::string(kDirections.at(static_cast<std::size_t>(fault.direction))));
+    if (key == "rate") add(key, number_text(fault.rate));
+    if (key == "seconds") add(key, number_text(fault.seconds));
+    if (key == "by") add(key, vector_text(fault.by));
+    if (key == "position") add(key, number_text(fault.position));
+    if (key == "velocity") add(key, number_text(fault.velocity));
+    if (key == "count") add(key, std::to_string(fault.count));
+    if (key == "offset") add(key, number_text(fault.offset));
+    if (key == "mode") add(key, std::string(kModes.at(static_cast<std::size_t>(fault.mode))));
+    if (key == "remaining") add(key, number_text(fault.remaining));
+  }
+  return text + "}";
 }
 
 std::vector<Fault> read_faults(const Value& value, int vehicles) {

@@ -65,6 +65,7 @@ struct Fault {
   [[nodiscard]] bool befalls(int number) const { return !vehicle || *vehicle == number; }
   /// For events: "packet_loss, rate 0.2, up, for 3 s, vehicle 1".
   [[nodiscard]] std::string text() const;
+  bool operator==(const Fault&) const = default;
 };
 
 }  // namespace jink::config

@@ -17,14 +17,17 @@ using planner::Vec3;
 
 struct SphereShape {
   double radius = 0.0;
+  bool operator==(const SphereShape&) const = default;
 };
 /// Axis-aligned, centred on the moving reference point; edge lengths.
 struct BoxShape {
   Vec3 edges = Vec3::Zero();
+  bool operator==(const BoxShape&) const = default;
 };
 /// The convex hull of these points, relative to the moving reference point; at least one, and they may be degenerate.
 struct VertexShape {
   std::vector<Vec3> vertices;
+  bool operator==(const VertexShape&) const = default;
 };
 using Shape = std::variant<SphereShape, BoxShape, VertexShape>;
 
@@ -33,6 +36,7 @@ struct LinearMotion {
   Vec3 position = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 acceleration = Vec3::Zero();
+  bool operator==(const LinearMotion&) const = default;
 };
 /// center + (sx(sin τ + 2 sin 2τ), sy(cos τ − 2 cos 2τ), −sz sin 3τ), τ = t/slower + offset.
 struct TrefoilMotion {
@@ -40,6 +44,7 @@ struct TrefoilMotion {
   Vec3 scale = Vec3::Ones();
   double slower = 1.0;
   double offset = 0.0;
+  bool operator==(const TrefoilMotion&) const = default;
 };
 /// Per axis: center + amplitude · sin(2π · frequency · t + phase).
 struct SineMotion {
@@ -47,6 +52,7 @@ struct SineMotion {
   Vec3 amplitude = Vec3::Zero();
   Vec3 frequency_hz = Vec3::Zero();
   Vec3 phase = Vec3::Zero();
+  bool operator==(const SineMotion&) const = default;
 };
 /// Constant velocity, reflected at the faces of [min, max].
 struct BounceMotion {
@@ -54,17 +60,20 @@ struct BounceMotion {
   Vec3 velocity = Vec3::Zero();
   Vec3 min = Vec3::Zero();
   Vec3 max = Vec3::Zero();
+  bool operator==(const BounceMotion&) const = default;
 };
 /// Piecewise linear through points at times; still before the first and after the last.
 struct WaypointsMotion {
   std::vector<double> times;
   std::vector<Vec3> points;
+  bool operator==(const WaypointsMotion&) const = default;
 };
 using Motion = std::variant<LinearMotion, TrefoilMotion, SineMotion, BounceMotion, WaypointsMotion>;
 
 struct Obstacle {
   Shape shape;
   Motion motion;
+  bool operator==(const Obstacle&) const = default;
 };
 
 /// How the world is measured: what the tracks look like.
@@ -75,6 +84,7 @@ struct Sensing {
   double position_noise = 0.0;        ///< standard deviation per axis
   double velocity_noise = 0.0;        ///< standard deviation per axis
   double dropout = 0.0;               ///< probability that a track is missing from a message
+  bool operator==(const Sensing&) const = default;
 };
 
 /// The same everywhere in the world.
@@ -82,6 +92,7 @@ struct Wind {
   Vec3 mean = Vec3::Zero();  ///< m/s, where the air goes to
   double gust = 0.0;         ///< m/s, standard deviation per axis
   double gust_time = 2.0;    ///< s, over which a gust dies down to 1/e
+  bool operator==(const Wind&) const = default;
 };
 
 /// What the autopilots' estimates get wrong: standard deviations per axis.
@@ -90,6 +101,7 @@ struct EstimateErrors {
   double velocity_noise = 0.0;  ///< m/s
   double drift = 0.0;           ///< m, of the slow wander of the position
   double drift_time = 20.0;     ///< s, over which it dies down to 1/e
+  bool operator==(const EstimateErrors&) const = default;
 };
 
 /// One of several vehicles in the same world, with its own way to go.

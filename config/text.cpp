@@ -92,6 +92,10 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
+std::string vector_text(const planner::Vec3& vector) {
+  return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + ", " + number_text(vector.z()) + "]";
+}
+
 std::string join(std::span<const std::string_view> names) {
   std::string out;
   for (const std::string_view name : names) out.append(out.empty() ? "" : ", ").append(name);

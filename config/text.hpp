@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "planner/types.hpp"
+
 namespace jink::config {
 
 /// The numbers that a key allows. Infinite bounds are not used: every number of a file has a sane limit.
@@ -49,6 +51,8 @@ std::optional<long> parse_integer(std::string_view text);
 
 /// The shortest decimal that reads back as the same double.
 std::string number_text(double value);
+/// "[x, y, z]", each as number_text().
+std::string vector_text(const planner::Vec3& vector);
 
 /// The names in one line: "a, b, c".
 std::string join(std::span<const std::string_view> names);

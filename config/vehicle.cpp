@@ -68,6 +68,16 @@ planner::VehicleLimits load_vehicle(const std::filesystem::path& file) {
   return read_limits(read_document(file));
 }
 
+bool is_project_vehicle(const std::string& name, const planner::VehicleLimits& limits) {
+  if (name.empty() || !is_file_name(name)) return false;
+  const std::filesystem::path file = config_folder() / "vehicles" / (name + ".yaml");
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return false;
+  const planner::VehicleLimits known = load_vehicle(file);
+  return std::all_of(kFields.begin(), kFields.end(),
+                     [&](const Field& field) { return known.*field.member == limits.*field.member; });
+}
+
 NamedVehicle read_vehicle(const Value& value, const std::filesystem::path& file,
                           const std::filesystem::path& vehicles) {
   if (value.is_map()) return {"inline", read_limits(value)};

@@ -18,4 +18,8 @@ struct NamedVehicle {
 /// folder of `file`, then in vehicles/ of config_folder(). Throws ConfigError; an unknown name's error lists the names.
 NamedVehicle read_vehicle(const Value& value, const std::filesystem::path& file, const std::filesystem::path& vehicles);
 
+/// Whether vehicles/ of config_folder() has a file of that name that says just these limits. Throws ConfigError where
+/// there is one that cannot be read.
+bool is_project_vehicle(const std::string& name, const planner::VehicleLimits& limits);
+
 }  // namespace jink::config
