@@ -30,7 +30,7 @@ BAD_USAGE = [
     (["--families", ""], ["--families", "''"]),
     (["--pilots", "icarus"], ["--pilots", "'icarus'", "jink"]),
     (["--tiers", "wild"], ["--tiers", "'wild'", "perfect, realistic"]),
-    (["--runs", "0"], ["--runs", "0", "1 - 1000000"]),
+    (["--runs", "0"], ["--runs", "0", "1 to 1000000"]),
     (["--shard", "3/2"], ["--shard", "'3/2'", "K/N"]),
     (["--shard", "0/2"], ["--shard", "'0/2'"]),
     (["--shard", "1"], ["--shard", "'1'"]),

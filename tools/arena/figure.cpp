@@ -13,7 +13,7 @@ namespace jink::arena {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // nothing to draw
-constexpr double kLabels = 190.0, kPanel = 200.0, kGap = 26.0;      // px
+constexpr double kLabels = 256.0, kPanel = 200.0, kGap = 26.0;      // px
 constexpr double kTop = 44.0, kLine = 15.0, kBetween = 9.0;
 
 // Told apart with colour blindness too (Okabe and Ito 2008).
@@ -148,7 +148,7 @@ std::string draw(const Mark& mark, const Axis& axis, double y, const std::string
   if (!mark.told.empty()) svg += fmt::format("<title>{}</title>\n", escaped(mark.told));
   if (std::isfinite(mark.bar)) {
     svg += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" opacity=\"0.55\"/>\n",
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" opacity=\"0.45\"/>\n",
         axis.x(0.0), y - 5.0, axis.x(mark.bar) - axis.x(0.0), 10.0, colour);
   }
   if (std::isfinite(mark.from) && std::isfinite(mark.to)) {

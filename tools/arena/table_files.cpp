@@ -58,7 +58,7 @@ Json json(const Row& row) {
           {"collisions", json(row.collisions)},
           {"left_world", json(row.left_world)},
           {"timeouts", json(row.timeouts)},
-          {"others", json(row.others), false},
+          {"others", json(row.others)},
           {"min_clearance", json(row.clearance)},
           {"time_ratio", json(row.time)},
           {"time_ratio_at_limit", json(row.time_at_limit)},
@@ -111,7 +111,7 @@ std::vector<Column> reading_columns() {
           {"collisions %", [](const Row& r) { return percent(r.collisions); }},
           {"left world", [](const Row& r) { return fmt::format("{}", r.left_world.count); }, false},
           {"time-outs", [](const Row& r) { return fmt::format("{}", r.timeouts.count); }, false},
-          {"others", [](const Row& r) { return fmt::format("{}", r.others.count); }},
+          {"others", [](const Row& r) { return fmt::format("{}", r.others.count); }, false},
           {"impossible (hit)",
            [](const Row& r) {
              return r.impossible == 0 ? "-" : fmt::format("{} ({})", r.impossible, r.impossible_collisions);
