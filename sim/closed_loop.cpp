@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string>
+#include <optional>
+#include <utility>
 
 #include "sim/autopilot.hpp"
 #include "sim/faults.hpp"
+#include "sim/flight_judge.hpp"
+#include "sim/team_link.hpp"
 #include "sim/vehicle_faults.hpp"
 #include "sim/virtual_transport.hpp"
 
@@ -16,86 +19,44 @@ namespace {
 
 constexpr double kGroundBelow = 1000.0;  // m
 
-/// Judges the true motion from step to step.
-class FlightJudge {
- public:
-  FlightJudge(const World& world, ClosedLoopResult& result)
-      : world_(world), result_(result), last_(world.scenario().start) {}
-
-  /// The outcome that ends the flight here, if any.
-  bridge::Outcome watch(double t, const Vec3& position) {
-    const SweepResult sweep = world_.sweep(last_, last_t_, position, t);
-    result_.min_clearance = std::min(result_.min_clearance, sweep.min_clearance);
-    result_.flight.path_length += (position - last_).norm();
-    result_.flight.flight_time = t;
-    last_ = position;
-    last_t_ = t;
-    if (sweep.min_clearance < 0.0) {
-      result_.flight.reason =
-          "hit obstacle " + std::to_string(World::id(sweep.obstacle)) + " at t = " + std::to_string(sweep.t_min) + " s";
-      return bridge::Outcome::kCollision;
-    }
-    if (!world_.inside(position)) {
-      result_.flight.reason = "left the world at t = " + std::to_string(t) + " s";
-      return bridge::Outcome::kLeftWorld;
-    }
-    return bridge::Outcome::kNone;
-  }
-
- private:
-  const World& world_;
-  ClosedLoopResult& result_;
-  Vec3 last_;
-  double last_t_ = 0.0;
-};
-
 }  // namespace
 
-config::Mission mission_of(const config::Scenario& scenario) {
+config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle) {
+  const config::ScenarioVehicle own = config::all_vehicles(scenario).at(vehicle);
   config::Mission mission;
   mission.name = scenario.name;
   mission.connection = "virtual time";
-  mission.vehicle_name = scenario.vehicle_name;
-  mission.vehicle = scenario.vehicle;
-  mission.waypoints = {scenario.target};
+  mission.vehicle_name = own.vehicle_name;
+  mission.vehicle = own.vehicle;
+  mission.waypoints = {own.target};
   mission.arrival = config::Arrival::kHold;
   mission.geofence = scenario.world.value_or(planner::Box{});
-  mission.min_height =
-      scenario.world ? scenario.world->min.z() : std::min({0.0, scenario.start.z(), scenario.target.z()});
+  mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
   mission.time_limit = scenario.time_limit;
+  mission.intents = !scenario.vehicles.empty();
   return mission;
+}
+
+config::Mission mission_of(const config::Scenario& scenario) {
+  return mission_of(scenario, 0);
 }
 
 namespace {
 
-AutopilotOptions vehicle_of(const config::Scenario& scenario, std::uint64_t seed) {
+AutopilotOptions vehicle_of(const config::Scenario& scenario, std::uint64_t seed, std::size_t number) {
+  const config::ScenarioVehicle own = config::all_vehicles(scenario).at(number);
   AutopilotOptions vehicle;
-  vehicle.limits = scenario.vehicle;
-  vehicle.position = scenario.start;
+  vehicle.system_id = 1 + static_cast<int>(number);
+  vehicle.limits = own.vehicle;
+  vehicle.position = own.start;
   vehicle.airborne = true;
   // The flight begins in the air wherever the start is, so the ground is out of reach; the world's floor is judged
   // apart.
-  vehicle.ground_height = std::min({0.0, scenario.start.z(), scenario.target.z()}) - kGroundBelow;
+  vehicle.ground_height = std::min({0.0, own.start.z(), own.target.z()}) - kGroundBelow;
   vehicle.ready_delay = 0.0;
-  vehicle.cascade.max_descent = scenario.vehicle.max_climb;
-  set_conditions(scenario, seed, 0, vehicle);
+  vehicle.cascade.max_descent = own.vehicle.max_climb;
+  set_conditions(scenario, seed, static_cast<int>(number), vehicle);
   return vehicle;
-}
-
-/// What the timeline does at `t`, with an event for each change.
-void befall(double t, FaultTimeline& timeline, Autopilot& autopilot, VirtualLink& link,
-            const std::vector<bridge::FlightObserver*>& observers) {
-  const std::vector<FaultChange> changes = timeline.advance(t);
-  for (const FaultChange& change : changes) {
-    const auto resets = autopilot.estimator().reset_counter();
-    const int reboots = autopilot.reboots();
-    const Vec3 before = autopilot.estimated_motion().position;
-    apply(timeline, change, 0, autopilot);
-    if (autopilot.reboots() == reboots && autopilot.estimator().reset_counter() != resets)
-      link.note_reset(autopilot.estimated_motion().position - before);
-    for (bridge::FlightObserver* observer : observers) observer->on_event(t, "fault", timeline.describe(change));
-  }
-  if (!changes.empty()) link.impair(timeline.link(0));
 }
 
 std::unique_ptr<bridge::PlannerTask> make_planner(const config::Settings& settings, const ClosedLoopOptions& options) {
@@ -105,69 +66,141 @@ std::unique_ptr<bridge::PlannerTask> make_planner(const config::Settings& settin
   return std::make_unique<bridge::VirtualPlanner>(task, latency);
 }
 
-/// The companion's summary with the truth's figures in place of those that it could only estimate.
-void complete(ClosedLoopResult& result, const bridge::FlightSummary& seen, bridge::Outcome ended, double max_speed,
-              const std::vector<bridge::FlightObserver*>& observers) {
-  const bridge::FlightSummary judged = result.flight;
-  bridge::FlightSummary& flight = result.flight;
-  flight = seen;
-  flight.flight_time = judged.flight_time;
-  flight.path_length = judged.path_length;
-  flight.straight_length = judged.straight_length;
-  flight.max_speed = max_speed;
-  if (ended == bridge::Outcome::kNone) return;
-  flight.outcome = ended;
-  flight.reason = judged.reason;
-  for (bridge::FlightObserver* observer : observers)
-    observer->on_event(flight.flight_time, bridge::to_string(ended), flight.reason);
-}
+/// One vehicle with all that flies it.
+struct Member {
+  Member(std::size_t number, const World& world, const FaultTimeline& timeline, const config::Settings& settings,
+         const ClosedLoopOptions& options, bridge::IntentTransport* intents)
+      : autopilot(vehicle_of(world.scenario(), options.seed, number)),
+        link(autopilot, options.seed),
+        tracks(world, timeline, options.seed),
+        planner(make_planner(settings, options)),
+        companion(mission_of(world.scenario(), number), settings,
+                  {link, tracks, *planner, observers_of(number, options), nullptr, intents}) {}
+
+  /// The flight observers are told of the first vehicle's companion.
+  static std::vector<bridge::FlightObserver*> observers_of(std::size_t number, const ClosedLoopOptions& options) {
+    return number == 0 ? options.flight_observers : std::vector<bridge::FlightObserver*>{};
+  }
+  [[nodiscard]] VehicleTruth truth() const {
+    return {autopilot.true_motion().position, autopilot.true_motion().velocity};
+  }
+
+  Autopilot autopilot;
+  VirtualLink link;
+  VirtualTracks tracks;
+  std::unique_ptr<bridge::PlannerTask> planner;
+  bridge::Companion companion;
+  bool over = false;  ///< its companion is done; it hangs where that left it
+};
+
+/// A scenario's vehicles in flight.
+class Flight {
+ public:
+  Flight(const World& world, const config::Settings& settings, const ClosedLoopOptions& options)
+      : world_(world),
+        options_(options),
+        timeline_(world.scenario().faults),
+        intents_(TeamLinkOptions{.seed = options.seed}),
+        judge_(world),
+        steps_per_turn_(std::max(
+            1, static_cast<int>(std::lround(1.0 / (settings.companion.setpoint_rate_hz * VehicleModel::kStep))))) {
+    const std::size_t count = 1 + world.scenario().vehicles.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      bridge::IntentTransport* intents = count > 1 ? &intents_.join() : nullptr;
+      members_.push_back(std::make_unique<Member>(k, world, timeline_, settings, options, intents));
+    }
+  }
+
+  ClosedLoopResult fly() {
+    for (int step = 0; go_on(step); ++step) {
+      for (const auto& member : members_) member->autopilot.step();
+    }
+    return result();
+  }
+
+ private:
+  /// What happens at the present instant. False: the flight is over.
+  bool go_on(int step) {
+    const double t = members_.front()->autopilot.time();
+    const bool turn = step % steps_per_turn_ == 0;
+    befall(t);
+    intents_.advance(t);
+    std::vector<VehicleTruth> truths;
+    for (const auto& member : members_) {
+      member->link.advance(t);
+      truths.push_back(member->truth());
+    }
+    const bool ended = judge_.watch(t, truths);
+    for (const auto& member : members_) member->tracks.advance(t, truths);
+    if (turn || ended) {
+      for (TruthObserver* observer : options_.truth_observers) observer->on_truth(t, truths, world_);
+    }
+    if (ended) return false;
+    return !turn || turn_companions(t);
+  }
+
+  bool turn_companions(double t) {
+    bool going = false;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      Member& member = *members_[k];
+      if (member.over) continue;
+      member.link.send_telemetry();
+      member.over = !member.companion.step(t);
+      if (member.over) judge_.close(k);
+      going = going || !member.over;
+    }
+    return going;
+  }
+
+  /// What the timeline does at `t`, with an event for each change.
+  void befall(double t) {
+    const std::vector<FaultChange> changes = timeline_.advance(t);
+    for (const FaultChange& change : changes) {
+      for (std::size_t k = 0; k < members_.size(); ++k) befall(change, k);
+      for (bridge::FlightObserver* observer : options_.flight_observers)
+        observer->on_event(t, "fault", timeline_.describe(change));
+    }
+    if (changes.empty()) return;
+    for (std::size_t k = 0; k < members_.size(); ++k) members_[k]->link.impair(timeline_.link(static_cast<int>(k)));
+  }
+
+  void befall(const FaultChange& change, std::size_t number) {
+    Member& member = *members_[number];
+    Autopilot& autopilot = member.autopilot;
+    const auto resets = autopilot.estimator().reset_counter();
+    const int reboots = autopilot.reboots();
+    const Vec3 before = autopilot.estimated_motion().position;
+    apply(timeline_, change, static_cast<int>(number), autopilot);
+    if (autopilot.reboots() == reboots && autopilot.estimator().reset_counter() != resets)
+      member.link.note_reset(autopilot.estimated_motion().position - before);
+  }
+
+  ClosedLoopResult result() {
+    std::vector<bridge::FlightSummary> seen;
+    for (const auto& member : members_) seen.push_back(member->companion.summary());
+    ClosedLoopResult result = judge_.result(std::move(seen));
+    if (!judge_.ended()) return result;
+    for (bridge::FlightObserver* observer : options_.flight_observers)
+      observer->on_event(judge_.time(), bridge::to_string(result.flight.outcome), result.flight.reason);
+    return result;
+  }
+
+  const World& world_;
+  const ClosedLoopOptions& options_;
+  FaultTimeline timeline_;
+  TeamLink intents_;
+  FlightJudge judge_;
+  std::vector<std::unique_ptr<Member>> members_;  // a link refers to its autopilot, which must not move
+  int steps_per_turn_;
+};
 
 }  // namespace
 
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options) {
   const World world(scenario);
-  ClosedLoopResult result;
-  result.flight.straight_length = (scenario.target - scenario.start).norm();
-  if (world.start_blocked()) {
-    result.flight.outcome = bridge::Outcome::kStartBlocked;
-    result.flight.reason = "the start is inside an obstacle";
-    result.min_clearance = world.clearance(scenario.start, 0.0);
-    return result;
-  }
-  FaultTimeline timeline(scenario.faults);
-  Autopilot autopilot(vehicle_of(scenario, options.seed));
-  VirtualLink link(autopilot, options.seed);
-  VirtualTracks tracks(world, timeline, options.seed);
-  const std::unique_ptr<bridge::PlannerTask> planner = make_planner(settings, options);
-  bridge::Companion companion(mission_of(scenario), settings, {link, tracks, *planner, options.flight_observers});
-
-  FlightJudge judge(world, result);
-  const int steps_per_turn =
-      std::max(1, static_cast<int>(std::lround(1.0 / (settings.companion.setpoint_rate_hz * VehicleModel::kStep))));
-  bridge::Outcome ended = bridge::Outcome::kNone;
-  double max_speed = 0.0;
-  for (int step = 0;; ++step) {
-    const double t = autopilot.time();
-    const bool turn = step % steps_per_turn == 0;
-    befall(t, timeline, autopilot, link, options.flight_observers);
-    link.advance(t);
-    const VehicleTruth truth{autopilot.true_motion().position, autopilot.true_motion().velocity};
-    max_speed = std::max(max_speed, truth.velocity.norm());
-    ended = judge.watch(t, truth.position);
-    tracks.advance(t, truth);
-    if (turn || ended != bridge::Outcome::kNone) {
-      for (TruthObserver* observer : options.truth_observers) observer->on_truth(t, std::span(&truth, 1), world);
-    }
-    if (ended != bridge::Outcome::kNone) break;
-    if (turn) {
-      link.send_telemetry();
-      if (!companion.step(t)) break;
-    }
-    autopilot.step();
-  }
-  complete(result, companion.summary(), ended, max_speed, options.flight_observers);
-  return result;
+  if (std::optional<ClosedLoopResult> blocked = FlightJudge(world).start_blocked()) return *std::move(blocked);
+  return Flight(world, settings, options).fly();
 }
 
 }  // namespace jink::sim

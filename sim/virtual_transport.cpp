@@ -200,17 +200,19 @@ bridge::VehicleState VirtualLink::snapshot() const {
 VirtualTracks::VirtualTracks(const World& world, const FaultTimeline& timeline, std::uint64_t seed)
     : world_(world), timeline_(timeline), pipeline_(world.scenario().sensing, seed), faults_(seed) {}
 
-void VirtualTracks::advance(double now, const VehicleTruth& vehicle) {
+void VirtualTracks::advance(double now, std::span<const VehicleTruth> vehicles) {
   now_ = now;
-  vehicle_ = vehicle;
-  pipeline_.step(now, world_, vehicle.position);
+  vehicles_.assign(vehicles.begin(), vehicles.end());
+  std::vector<Vec3> positions;
+  for (const VehicleTruth& vehicle : vehicles) positions.push_back(vehicle.position);
+  pipeline_.step(now, world_, positions);
 }
 
 bool VirtualTracks::poll(bridge::TrackMessage& message) {
   TrackMessage measured;
   do {
     if (!pipeline_.poll(now_, measured)) return false;
-  } while (!faults_.apply(timeline_, world_, std::span(&vehicle_, 1), measured));
+  } while (!faults_.apply(timeline_, world_, vehicles_, measured));
   accept(measured, message);
   return true;
 }

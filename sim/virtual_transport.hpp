@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -87,8 +88,10 @@ class VirtualTracks final : public bridge::TrackSource {
   /// The world and the timeline outlive it.
   VirtualTracks(const World& world, const FaultTimeline& timeline, std::uint64_t seed);
 
-  /// Goes on to `now`, with the vehicle as it is then.
-  void advance(double now, const VehicleTruth& vehicle);
+  /// Goes on to `now`, with the vehicles as they are then, by number: what is within range of one is in the message.
+  void advance(double now, std::span<const VehicleTruth> vehicles);
+  /// The same for one vehicle.
+  void advance(double now, const VehicleTruth& vehicle) { advance(now, std::span(&vehicle, 1)); }
 
   bool poll(bridge::TrackMessage& message) override;
   [[nodiscard]] bridge::TrackSourceStatus status() const override { return status_; }
@@ -101,7 +104,7 @@ class VirtualTracks final : public bridge::TrackSource {
   SensingPipeline pipeline_;
   TrackFaults faults_;
   double now_ = 0.0;
-  VehicleTruth vehicle_;
+  std::vector<VehicleTruth> vehicles_;
   bridge::TrackSourceStatus status_{1, 0, 0, 0, 0, {}};
 };
 

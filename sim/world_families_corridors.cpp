@@ -13,8 +13,8 @@ namespace jink::sim::families {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kCube = 0.8;      // m, edge of the obstacles of both corridors
-constexpr double kCurved = 0.65;   // share of the obstacles that fly trefoils, in both
+constexpr double kCube = 0.8;       // m, edge of the obstacles of both corridors
+constexpr double kCurved = 0.65;    // share of the obstacles that fly trefoils, in both
 constexpr double kTimeLimit = 100;  // s, SANDO's
 
 /// What both corridors are flown with: SANDO's limits. The cruise speed is the limit, since travel times are judged
@@ -32,13 +32,28 @@ Vec3 random_center(RandomStream& random, const planner::Box& box) {
   return {x, y, random.uniform(box.min.z(), box.max.z())};
 }
 
-/// Adds cubes until there are `count`, drawn anew where one is near the start at t = 0. `draw(i)` is the i-th's motion.
+/// Whether it never leaves the target by a metre, so that nobody could arrive. All motions here have gone round once in
+/// that time, or to their farthest.
+bool occupies_target(const World& world) {
+  constexpr double kRound = 75.0;  // s
+  constexpr double kFree = 1.0;    // m
+  const Vec3& target = world.scenario().target;
+  if (world.clearance(target, 0.0) > 10.0) return false;  // far away
+  for (double t = 0.0; t < kRound; t += 0.25) {
+    if (world.clearance(target, t) > kFree) return false;
+  }
+  return true;
+}
+
+/// Adds cubes until there are `count`, drawn anew where one is near the start at t = 0 or always at the target.
+/// `draw(i)` is the i-th's motion.
 template <typename Draw>
 void add_cubes(config::Scenario& scenario, int count, const Draw& draw) {
   config::Scenario alone = scenario;
   for (int i = 0; i < count;) {
     alone.obstacles = {{config::BoxShape{Vec3::Constant(kCube)}, draw(i)}};
-    if (World(alone).clearance(scenario.start, 0.0) < kStartClearance) continue;
+    const World world(alone);
+    if (world.clearance(scenario.start, 0.0) < kStartClearance || occupies_target(world)) continue;
     scenario.obstacles.push_back(alone.obstacles.front());
     ++i;
   }
@@ -49,9 +64,10 @@ void add_cubes(config::Scenario& scenario, int count, const Draw& draw) {
 // J. Tordesillas, J. P. How, "MADER: Trajectory Planner in Multiagent and Dynamic Environments", IEEE T-RO 38(1), 2022
 // (online 2021); the figures are those of dynamic_corridor.py and run_many_sims_single_agent.py, github.com/mit-acl/
 // mader: goal (75, 0, 1), centres x 2 to 75, y ±3, z 1 to 2, offsets ±2π.
-// differs: there the 35 % that swing in z, by -sin(t + offset), are poles of 0.4 x 0.4 x 4 m and beams of 0.4 x 8 x 0.4 m,
-// whose enclosing spheres would close the corridor for whoever is told of spheres; here they are cubes like the others
-// and keep the others' time. None is within kStartClearance of the start at first. The vehicle's limits are SANDO's.
+// differs: there the 35 % that swing in z, by -sin(t + offset), are poles of 0.4 x 0.4 x 4 m and beams of 0.4 x 8 x 0.4
+// m, whose enclosing spheres would close the corridor for whoever is told of spheres; here they are cubes like the
+// others and keep the others' time. None is within kStartClearance of the start at first. None swings at the goal,
+// where nobody could arrive (there, a flight counts from x = 74 m on). The vehicle's limits are SANDO's.
 void build_mader(config::Scenario& scenario, RandomStream& random, int count) {
   constexpr double kSlower = 1.1;
   fly_at_the_limit(scenario);

@@ -114,11 +114,11 @@ void build_odd(config::Scenario& scenario, RandomStream& random) {
   }
 }
 
-// The encounters that NASA's detect-and-avoid logic is shown with (C. Muñoz et al., "DAIDALUS: Detect and Avoid Alerting
-// Logic for Unmanned Systems", DASC 2015; scenario files H* and C* of its reference implementation, github.com/nasa/
-// daidalus): both aircraft keep their velocities and meet at a closest point of approach, with a small miss distance.
-// Scaled: the own speed is the cruise speed in place of 200 kn, the others' are shares of it (H1.daa: three times), and
-// the closest approach is within the two spheres, not within a well-clear volume.
+// The encounters that NASA's detect-and-avoid logic is shown with (C. Muñoz et al., "DAIDALUS: Detect and Avoid
+// Alerting Logic for Unmanned Systems", DASC 2015; scenario files H* and C* of its reference implementation,
+// github.com/nasa/ daidalus): both aircraft keep their velocities and meet at a closest point of approach, with a small
+// miss distance. Scaled: the own speed is the cruise speed in place of 200 kn, the others' are shares of it (H1.daa:
+// three times), and the closest approach is within the two spheres, not within a well-clear volume.
 
 void build_daidalus_head_on(config::Scenario& scenario, RandomStream& random) {
   add_intruders(scenario, random, [](RandomStream& draw) {

@@ -47,12 +47,6 @@ int replay_scenario(const ReplayOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
-  if (!scenario.vehicles.empty()) {
-    throw UsageError(options.scenario +
-                     ": key 'vehicles': replay flies one vehicle; fly several with jink sim and one " +
-                     "jink fly for each");
-  }
-
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
@@ -74,8 +68,8 @@ int replay_scenario(const ReplayOptions& options) {
   const sim::ClosedLoopResult result = sim::fly_closed_loop(scenario, settings, loop);
   if (log) log->close();
 
-  const auto summary =
-      flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
+  auto summary = flight_summary("scenario", scenario.name, options.common.seed, result.flight, result.min_clearance);
+  if (result.vehicles.size() > 1) summary["vehicles"] = vehicles_json(result.vehicles, 1);
   write_json(options.common.json, summary);
   printer.line(describe_flight(summary));
   if (!options.report.empty()) {

@@ -167,21 +167,13 @@ nlohmann::ordered_json summary_of(const sim::Simulator& simulator, const SimOpti
   const bridge::Outcome outcome = sim::worst(reports);
   summary["outcome"] = bridge::to_string(outcome);
   std::string reason;
-  auto vehicles = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const sim::VehicleReport& report = reports[k];
     if (report.flight.outcome == outcome)
       reason += fmt::format("{}vehicle {}: {}", reason.empty() ? "" : "; ", k, report.flight.reason);
-    vehicles.push_back({{"vehicle", k},
-                        {"system", simulator.autopilot(k).options().system_id},
-                        {"outcome", bridge::to_string(report.flight.outcome)},
-                        {"reason", report.flight.reason},
-                        {"flight_time_s", report.flight.flight_time},
-                        {"path_length", report.flight.path_length},
-                        {"min_clearance", finite_or_null(report.min_clearance)}});
   }
   summary["reason"] = reason;
-  summary["vehicles"] = std::move(vehicles);
+  summary["vehicles"] = vehicles_json(reports, simulator.autopilot(0).options().system_id);
   return summary;
 }
 

@@ -57,6 +57,21 @@ Json flight_summary(const std::string& kind, const std::string& name, std::uint6
   return summary;
 }
 
+Json vehicles_json(std::span<const sim::VehicleReport> reports, int first_system) {
+  Json vehicles = Json::array();
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    const sim::VehicleReport& report = reports[k];
+    vehicles.push_back({{"vehicle", k},
+                        {"system", first_system + static_cast<int>(k)},
+                        {"outcome", bridge::to_string(report.flight.outcome)},
+                        {"reason", report.flight.reason},
+                        {"flight_time_s", report.flight.flight_time},
+                        {"path_length", report.flight.path_length},
+                        {"min_clearance", finite_or_null(report.min_clearance)}});
+  }
+  return vehicles;
+}
+
 std::string describe_flight(const Json& s) {
   const std::string name = s.contains("scenario") ? "scenario " + s["scenario"].get<std::string>()
                                                   : "mission " + s["mission"].get<std::string>();
@@ -71,6 +86,12 @@ std::string describe_flight(const Json& s) {
                       s["deadline_misses"].get<std::uint64_t>(), number(s["plan_ms"]["p50"], "ms"),
                       number(s["plan_ms"]["p99"], "ms"), number(s["track_to_setpoint_ms"]["p50"], "ms"),
                       number(s["track_to_setpoint_ms"]["p99"], "ms"));
+  if (s.contains("vehicles")) {
+    for (const Json& vehicle : s["vehicles"])
+      text += fmt::format("\n  vehicle {}: {} after {}, smallest clearance {}", vehicle["vehicle"].get<int>(),
+                          vehicle["outcome"].get<std::string>(), number(vehicle["flight_time_s"], "s"),
+                          number(vehicle["min_clearance"], "m"));
+  }
   for (const Json& hazard : s["hazards"])
     text += fmt::format("\n  braked for {} at {}: {}", number(hazard["duration_s"], "s"), number(hazard["t"], "s"),
                         hazard["what"].get<std::string>());

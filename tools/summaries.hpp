@@ -4,10 +4,12 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "bridge/companion.hpp"
 #include "config/scenario.hpp"
+#include "sim/judge.hpp"
 
 namespace jink::tools {
 
@@ -15,6 +17,10 @@ namespace jink::tools {
 /// obstacle.
 nlohmann::ordered_json flight_summary(const std::string& kind, const std::string& name, std::uint64_t seed,
                                       const bridge::FlightSummary& flight, std::optional<double> min_clearance);
+
+/// What became of each vehicle of a team, by number: [{vehicle, system, outcome, reason, flight_time_s, path_length,
+/// min_clearance}, ...]. Vehicle 0 is MAVLink system `first_system`, the next is the next.
+nlohmann::ordered_json vehicles_json(std::span<const sim::VehicleReport> reports, int first_system);
 
 /// A few lines for people.
 std::string describe_flight(const nlohmann::ordered_json& summary);

@@ -189,7 +189,7 @@ class VirtualTracksTest : public testing::Test {
     std::vector<bridge::TrackMessage> all;
     for (int step = 0; 0.004 * step <= t; ++step) {
       timeline.advance(0.004 * step);
-      tracks.advance(0.004 * step, {});
+      tracks.advance(0.004 * step, VehicleTruth{});
       for (bridge::TrackMessage message; tracks.poll(message);) all.push_back(message);
     }
     status = tracks.status();

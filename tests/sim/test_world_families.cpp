@@ -2,15 +2,20 @@
 #include "sim/world_families.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "config/scenario_writer.hpp"
 #include "sim/world.hpp"
+#include "tests/support/same_scenario.hpp"
 
 namespace jink::sim {
 namespace {
@@ -18,6 +23,22 @@ namespace {
 constexpr std::uint64_t kSeeds = 50;
 
 class WorldFamily : public ::testing::TestWithParam<std::string_view> {};
+/// All but the literature's corridors, for which see test_world_corridors.cpp.
+class OwnFamily : public WorldFamily {};
+/// Those blocked by an obstacle, not by another vehicle (likewise).
+class BlockedFamily : public WorldFamily {};
+
+std::vector<std::string_view> own_families() {
+  std::vector<std::string_view> families(world_families().begin(), world_families().end());
+  std::erase_if(families, [](std::string_view family) { return !blocks_straight_line(family); });
+  return families;
+}
+
+std::vector<std::string_view> families_blocked_by_obstacles() {
+  std::vector<std::string_view> families = own_families();
+  std::erase_if(families, [](std::string_view family) { return make_world(family, 1).obstacles.empty(); });
+  return families;
+}
 
 /// All numbers of a world in one list, so that two worlds can be compared.
 std::vector<double> numbers_of(const config::Scenario& scenario) {
@@ -80,14 +101,19 @@ TEST_P(WorldFamily, SeedsDiffer) {
   EXPECT_EQ(std::adjacent_find(worlds.begin(), worlds.end()), worlds.end());
 }
 
-TEST_P(WorldFamily, StartIsClear) {
+TEST_P(WorldFamily, StartsAreClear) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const World world(make_world(GetParam(), seed));
-    EXPECT_GE(world.clearance(world.scenario().start, 0.0), kStartClearance) << seed;
+    const std::vector<config::ScenarioVehicle> team = config::all_vehicles(world.scenario());
+    for (std::size_t k = 0; k < team.size(); ++k) {
+      EXPECT_GE(world.clearance(team[k].start, 0.0, team[k].vehicle.radius), kStartClearance) << seed;
+      for (std::size_t j = 0; j < k; ++j)
+        EXPECT_GE((team[k].start - team[j].start).norm(), kStartClearance + 2 * team[k].vehicle.radius) << seed;
+    }
   }
 }
 
-TEST_P(WorldFamily, MissionIsInTheWorldAndOfItsLength) {
+TEST_P(OwnFamily, MissionIsInTheWorldAndOfItsLength) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const config::Scenario scenario = make_world(GetParam(), seed);
     const World world(scenario);
@@ -103,14 +129,14 @@ TEST_P(WorldFamily, MissionIsInTheWorldAndOfItsLength) {
   }
 }
 
-TEST_P(WorldFamily, StraightFlightIsHit) {
+TEST_P(BlockedFamily, StraightFlightIsHit) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     EXPECT_LT(straight_clearance(World(make_world(GetParam(), seed))), -kStraightOverlap) << seed;
   }
 }
 
 TEST_P(WorldFamily, MotionIsAsDeclared) {
-  bool all_linear = true;
+  bool all_linear = !make_world(GetParam(), 1).obstacles.empty();
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     for (const config::Obstacle& obstacle : make_world(GetParam(), seed).obstacles) {
       const auto* motion = std::get_if<config::LinearMotion>(&obstacle.motion);
@@ -124,12 +150,41 @@ TEST_P(WorldFamily, MotionIsAsDeclared) {
   EXPECT_EQ(all_linear, is_linear(GetParam()));
 }
 
+// As a failed flight's world is kept, so that it can be flown again.
+TEST_P(WorldFamily, ReadsBackFromYamlInBothTiers) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) /
+                                     ("jink_" + std::string(GetParam()) + "_" + std::to_string(getpid()) + ".yaml");
+  for (const Tier tier : {Tier::kPerfect, Tier::kRealistic}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      config::Scenario scenario = make_world(GetParam(), seed);
+      set_tier(scenario, tier);
+      std::ofstream(file) << config::to_yaml(scenario);
+      testing_support::expect_same(scenario, config::load_scenario(file));
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+TEST_P(WorldFamily, IsMadeWithPerfectSensing) {
+  const config::Scenario scenario = make_world(GetParam(), 1);
+  config::Scenario perfect = scenario;
+  set_tier(perfect, Tier::kPerfect);
+  EXPECT_EQ(scenario.sensing, perfect.sensing);
+  EXPECT_EQ(scenario.sensing.range, GetParam() == "late" ? 7.0 : planner::kInfinity);
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::string_view>& family) {
+  return std::string(family.param);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, WorldFamily, ::testing::ValuesIn(world_families().begin(), world_families().end()),
-                         [](const auto& family) { return std::string(family.param); });
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(All, OwnFamily, ::testing::ValuesIn(own_families()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, BlockedFamily, ::testing::ValuesIn(families_blocked_by_obstacles()), name_of);
 
 TEST(WorldFamilies, DistinctNames) {
   const std::vector<std::string_view> names(world_families().begin(), world_families().end());
-  EXPECT_GE(names.size(), 13U);
+  EXPECT_GE(names.size(), 25U);
   for (const std::string_view name : names) EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
@@ -137,6 +192,20 @@ TEST(WorldFamilies, UnknownNameThrows) {
   EXPECT_THROW(make_world("crossings", 1), std::invalid_argument);
   EXPECT_THROW(make_world("", 1), std::invalid_argument);
   EXPECT_FALSE(is_linear("crossings"));
+  EXPECT_FALSE(blocks_straight_line("crossings"));
+}
+
+TEST(Tiers, RealisticIsTheIssuesAndKeepsASmallerRange) {
+  config::Scenario scenario = make_world("crossing", 1);
+  set_tier(scenario, Tier::kRealistic);
+  EXPECT_EQ(scenario.sensing, (config::Sensing{12.0, 20.0, 0.1, 0.1, 0.3, 0.05}));
+  config::Scenario late = make_world("late", 1);
+  set_tier(late, Tier::kRealistic);
+  EXPECT_EQ(late.sensing, (config::Sensing{7.0, 20.0, 0.1, 0.1, 0.3, 0.05}));
+  set_tier(late, Tier::kPerfect);
+  EXPECT_EQ(late.sensing, (config::Sensing{7.0, 20.0, 0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(to_string(Tier::kPerfect), "perfect");
+  EXPECT_EQ(to_string(Tier::kRealistic), "realistic");
 }
 
 }  // namespace

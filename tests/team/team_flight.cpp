@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <numbers>
 
 #include "bridge/frames.hpp"
-#include "planner/random.hpp"
 #include "sim/autopilot.hpp"
+#include "sim/team_link.hpp"
 
 namespace jink::team {
 namespace {
@@ -69,66 +68,6 @@ class NoTracks final : public bridge::TrackSource {
   [[nodiscard]] bridge::TrackSourceStatus status() const override { return {}; }
 };
 
-/// Everybody's intents, on their way to everybody.
-class Exchange {
- public:
-  explicit Exchange(const Options& options) : options_(options), random_(options.seed, 77) {}
-
-  struct Letter {
-    double sent = 0.0, arrives = 0.0;
-    std::uint64_t writer = 0;
-    bridge::Intent intent;
-  };
-
-  void send(std::size_t from, std::uint64_t writer, const bridge::Intent& intent) {
-    for (std::size_t to = 0; to < boxes.size(); ++to) {
-      const double lost = random_.uniform(0.0, 1.0);
-      const double late = random_.uniform(0.0, 1.0);
-      // A transport delivers to its own process too.
-      if (to == from || lost >= options_.loss) {
-        boxes[to].push_back({now, now + options_.delay + late * options_.jitter, writer, intent});
-      }
-    }
-  }
-
-  double now = 0.0;
-  std::vector<std::deque<Letter>> boxes;
-
- private:
-  Options options_;
-  planner::RandomStream random_;
-};
-
-class Transport final : public bridge::IntentTransport {
- public:
-  Transport(Exchange& exchange, std::size_t number, const Vehicle& vehicle, double clock_offset)
-      : exchange_(exchange), number_(number), vehicle_(vehicle), clock_offset_(clock_offset) {}
-
-  bool poll(bridge::IntentMessage& message) override {
-    auto& box = exchange_.boxes[number_];
-    const auto letter =
-        std::find_if(box.begin(), box.end(), [&](const auto& l) { return l.arrives <= exchange_.now + 1e-9; });
-    if (letter == box.end() || !vehicle_.listens) return false;
-    // Stamped with the sender's system time, which is `clock_offset_` ahead for each number.
-    const double difference = clock_offset_ * (static_cast<double>(number_) - static_cast<double>(letter->writer - 1));
-    message = {letter->writer, exchange_.now, exchange_.now - letter->sent + difference, letter->intent};
-    box.erase(letter);
-    return true;
-  }
-  bool publish(const bridge::Intent& intent) override {
-    if (exchange_.now < vehicle_.silent_from) exchange_.send(number_, identity(), intent);
-    return true;
-  }
-  [[nodiscard]] std::uint64_t identity() const override { return number_ + 1; }
-  [[nodiscard]] bridge::IntentStatus status() const override { return {}; }
-
- private:
-  Exchange& exchange_;
-  std::size_t number_;
-  const Vehicle& vehicle_;
-  double clock_offset_;
-};
-
 class Listener final : public bridge::FlightObserver {
  public:
   explicit Listener(Flown& flown) : flown_(flown) {}
@@ -164,12 +103,11 @@ sim::AutopilotOptions autopilot_of(const Vehicle& vehicle) {
 
 /// One vehicle with all that flies it.
 struct Member {
-  Member(const Vehicle& vehicle_, std::size_t number, Exchange& exchange, const config::Settings& settings,
+  Member(const Vehicle& vehicle_, bridge::IntentTransport& transport, const config::Settings& settings,
          const Options& options, Flown& flown)
       : vehicle(vehicle_),
         autopilot(autopilot_of(vehicle)),
         link(autopilot, vehicle),
-        transport(exchange, number, vehicle, options.clock_offset),
         listener(flown),
         planner({settings.horizon, settings.optimizer, options.seed, options.threads},
                 1e-3 * settings.companion.planner_latency_ms),
@@ -179,7 +117,6 @@ struct Member {
   sim::Autopilot autopilot;
   Link link;
   NoTracks tracks;
-  Transport transport;
   Listener listener;
   bridge::VirtualPlanner planner;
   bridge::Companion companion;
@@ -215,19 +152,20 @@ double Result::last_arrival() const {
 Result fly(const std::vector<Vehicle>& vehicles, const config::Settings& settings, const Options& options) {
   Result result;
   result.vehicles.resize(vehicles.size());
-  Exchange exchange(options);
-  exchange.boxes.resize(vehicles.size());
+  sim::TeamLink exchange({options.seed, options.delay, options.jitter, options.loss});
   std::vector<std::unique_ptr<Member>> members;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     Vehicle vehicle = vehicles[i];
     if (vehicle.system_id == 0) vehicle.system_id = static_cast<std::uint32_t>(i + 1);
-    members.push_back(std::make_unique<Member>(vehicle, i, exchange, settings, options, result.vehicles[i]));
+    const double clock_ahead = options.clock_offset * static_cast<double>(i);
+    bridge::IntentTransport& transport = exchange.join({vehicle.listens, vehicle.silent_from, clock_ahead});
+    members.push_back(std::make_unique<Member>(vehicle, transport, settings, options, result.vehicles[i]));
   }
   const int steps_per_turn = static_cast<int>(std::lround(kTurn / sim::VehicleModel::kStep));
   bool going = true;
   for (int step = 0; going; ++step) {
     const double t = members.front()->autopilot.time();
-    exchange.now = t;
+    exchange.advance(t);
     judge(members, t, result);
     if (step % steps_per_turn == 0) {
       going = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "judge.hpp"
+#include "tools/arena/oracle/judge.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "../sim/random_obstacles.hpp"
-#include "cells.hpp"
 #include "sim/world.hpp"
 #include "sim/world_families.hpp"
+#include "tools/arena/oracle/cells.hpp"
 
 namespace jink::worlds {
 namespace {
@@ -181,8 +181,48 @@ TEST(Judge, FlightsThroughTheFamiliesAreSound) {
       const Judgement judgement = judge(scenario);
       ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
       expect_sound(scenario, judgement.flight);
+      ASSERT_EQ(judgement.others.size(), scenario.vehicles.size());
+      for (std::size_t k = 0; k < judgement.others.size(); ++k)
+        expect_sound(alone(scenario, k + 1), judgement.others[k]);
     }
   }
+}
+
+/// Where a flight is at `t`; at its end from then on.
+Vec3 place_at(const Flight& flight, double t) {
+  for (std::size_t i = 1; i < flight.path.size(); ++i) {
+    const TimedPoint& from = flight.path[i - 1];
+    const TimedPoint& to = flight.path[i];
+    if (t <= to.t) return from.position + (t - from.t) / (to.t - from.t) * (to.position - from.position);
+  }
+  return flight.path.back().position;
+}
+
+// Two that swap places: each alone flies straight through the other.
+TEST(Judge, FlightsOfATeamKeepApart) {
+  config::Scenario scenario = hall({});
+  scenario.vehicles = {{scenario.target, scenario.start, "ardrone2", {}}, {{8, -2, 2}, {8, 2, 2}, "ardrone2", {}}};
+  const Judgement judgement = judge(scenario);
+  ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
+  ASSERT_EQ(judgement.others.size(), 2U);
+  const std::vector<const Flight*> flights = {&judgement.flight, &judgement.others[0], &judgement.others[1]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    expect_sound(alone(scenario, k), *flights[k]);
+    for (std::size_t j = 0; j < k; ++j) {
+      for (double t = 0.0; t < 20.0; t += 0.01) {
+        ASSERT_GE((place_at(*flights[k], t) - place_at(*flights[j], t)).norm(), 2 * 0.3 + 0.4 - 1e-3) << t;
+      }
+    }
+  }
+}
+
+TEST(Judge, TeamIsImpossibleWhereOneOfItIsAlone) {
+  config::Scenario scenario = hall({ball(0.6, config::LinearMotion{{14, -2, 2}})});
+  scenario.vehicles = {{{2, 2, 2}, {14, -2, 2}, "ardrone2", {}}};
+  scenario.time_limit = 10;
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  scenario.vehicles.clear();
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kSolvable);
 }
 
 TEST(TrueClearance, OfCasesWorkedByHand) {

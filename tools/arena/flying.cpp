@@ -182,14 +182,10 @@ std::string replay_command(const std::filesystem::path& out, const FlightRecord&
 }
 
 Verdict judge_world(const World& world) {
-  const config::Scenario scenario = sim::make_world(world.family, world.seed);
-  switch (worlds::judge(scenario).verdict) {
-    case worlds::Verdict::kSolvable:
-      return scenario.vehicles.empty() ? Verdict::kSolvable : Verdict::kUnknown;
-    case worlds::Verdict::kImpossible:
-      return Verdict::kImpossible;
-    case worlds::Verdict::kUnknown:
-      break;
+  switch (worlds::judge(sim::make_world(world.family, world.seed)).verdict) {
+    case worlds::Verdict::kSolvable: return Verdict::kSolvable;
+    case worlds::Verdict::kImpossible: return Verdict::kImpossible;
+    case worlds::Verdict::kUnknown: break;
   }
   return Verdict::kUnknown;
 }

@@ -63,7 +63,6 @@ void Motion::follow(const planner::TimedPath& reference) {
     const double speed = wished.norm();
     steer(speed > fastest ? Vec3(wished * (fastest / speed)) : wished);
   }
-  fly_to_target();
 }
 
 Vec3 undisturbed_velocity(const planner::PathRequest& request, double braking, const Vec3& position) {

@@ -25,9 +25,9 @@ class Motion {
   /// of the acceleration.
   void stop(bool hard = false);
 
-  /// Follows a timed path from its first time on, which is the motion's time 0: its velocity, and what the motion is
-  /// off by made good within planner::kCatchUp seconds, never faster than allows to brake for the target. Then on to
-  /// the target. Precondition: not empty.
+  /// Follows a timed path from its first time to its last, the first being the motion's time 0: its velocity, and what
+  /// the motion is off by made good within planner::kCatchUp seconds, never faster than allows to brake for the target.
+  /// Precondition: not empty.
   void follow(const planner::TimedPath& reference);
 
   [[nodiscard]] double t() const { return path_.back().t; }
@@ -46,8 +46,7 @@ class Motion {
 
 /// The velocity of undisturbed flight at `position`: straight to the target at cruise speed, slower where it has to
 /// brake for it or the climb limit asks for it.
-[[nodiscard]] Vec3 undisturbed_velocity(const planner::PathRequest& request, double braking,
-                                                 const Vec3& position);
+[[nodiscard]] Vec3 undisturbed_velocity(const planner::PathRequest& request, double braking, const Vec3& position);
 
 /// What plans normally use of the vehicle's acceleration, and what they use in an emergency, m/s².
 [[nodiscard]] double normal_acceleration(const planner::PathRequest& request, const planner::HorizonSettings& settings);

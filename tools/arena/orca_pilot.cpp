@@ -11,8 +11,9 @@
 namespace jink::arena {
 namespace {
 
-constexpr double kShort = 1e-9;      // m, m/s
+constexpr double kShort = 1e-9;        // m, m/s
 constexpr double kUndisturbed = 1e-6;  // m/s
+constexpr double kToTheRight = 0.1;    // of the wished velocity
 
 /// A direction square to the unit vector `axis`: of `wished` where that has one, else level, else north.
 Vec3 square_to(const Vec3& axis, const Vec3& wished) {
@@ -23,17 +24,20 @@ Vec3 square_to(const Vec3& axis, const Vec3& wished) {
   return Vec3::UnitX();
 }
 
-/// Half-spaces for |vertical speed| and for the flight volume.
+/// Half-spaces for |vertical speed| and for the flight volume, from whose walls the margin is kept too, or what the
+/// target leaves of it.
 std::vector<HalfSpace> limits(const planner::PathRequest& request, double braking) {
-  std::vector<HalfSpace> result{{Vec3::UnitZ(), -request.vehicle.max_climb}, {-Vec3::UnitZ(), -request.vehicle.max_climb}};
-  const auto towards = [&](const Vec3& direction, double distance) {
+  std::vector<HalfSpace> result{{Vec3::UnitZ(), -request.vehicle.max_climb},
+                                {-Vec3::UnitZ(), -request.vehicle.max_climb}};
+  const auto towards = [&](const Vec3& direction, double distance, double of_target) {
     if (!std::isfinite(distance)) return;
-    const double left = std::max(0.0, distance);
+    const double left = std::max(0.0, distance - std::clamp(of_target, 0.0, request.margin));
     result.push_back({-direction, -std::min(std::sqrt(2.0 * braking * left), left / planner::kCatchUp)});
   };
+  const planner::Box& volume = request.volume;
   for (int axis = 0; axis < 3; ++axis) {
-    towards(Vec3::Unit(axis), request.volume.max[axis] - request.position[axis]);
-    towards(-Vec3::Unit(axis), request.position[axis] - request.volume.min[axis]);
+    towards(Vec3::Unit(axis), volume.max[axis] - request.position[axis], volume.max[axis] - request.target[axis]);
+    towards(-Vec3::Unit(axis), request.position[axis] - volume.min[axis], request.target[axis] - volume.min[axis]);
   }
   return result;
 }
@@ -78,12 +82,17 @@ planner::Plan OrcaPilot::plan(const bridge::PlanJob& job) {
     const Vec3 offset = sphere.position - request.position;
     const double closing = request.vehicle.max_speed + sphere.velocity.norm();
     if (offset.norm() - sphere.radius > closing * orca_.time_horizon) continue;
-    half_spaces.push_back(orca_half_space(offset, sphere.radius, request.velocity, sphere.velocity,
-                                          orca_.time_horizon, orca_.contact_time));
+    half_spaces.push_back(orca_half_space(offset, sphere.radius, request.velocity, sphere.velocity, orca_.time_horizon,
+                                          orca_.contact_time));
     urgent = urgent || half_spaces.back().normal.dot(request.velocity) < half_spaces.back().offset;
   }
-  const Vec3 chosen =
-      least_violating_velocity(limits(request, normal), half_spaces, request.vehicle.max_speed, wished);
+  const std::vector<HalfSpace> hard = limits(request, std::min(settings_.braking, normal));
+  const auto nearest_to = [&](const Vec3& velocity) {
+    return least_violating_velocity(hard, half_spaces, request.vehicle.max_speed, velocity);
+  };
+  Vec3 chosen = nearest_to(wished);
+  // Exactly head on, both would only slow down: whoever is disturbed keeps to the right.
+  if ((chosen - wished).norm() >= kUndisturbed) chosen = nearest_to(wished + kToTheRight * wished.cross(Vec3::UnitZ()));
 
   Motion motion(request, settings_, urgent ? hardest_acceleration(request, settings_) : normal);
   if ((chosen - wished).norm() < kUndisturbed) {

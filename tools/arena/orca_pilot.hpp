@@ -25,9 +25,10 @@ struct OrcaSettings {
 /// Takes the velocity nearest to undisturbed flight's that the half-spaces of all obstacles that can matter within the
 /// time horizon leave, with hard ones for the climb limit and for the volume: towards a wall never faster than can be
 /// braked. Where there is none it takes the one that violates those of the obstacles the least (section 5.3 of the
-/// paper). Obstacles keep the velocity of their tracks. The path flies that velocity for the time horizon and stops,
-/// or, where nothing is in the way, flies to the target; accelerations are bounded, and where a half-space is violated
-/// now more of the acceleration is used, as jink does in an emergency.
+/// paper). Where it cannot have undisturbed flight's velocity, it wishes for one a tenth to the right of it: that
+/// breaks the symmetry in which ORCA only slows down. Obstacles keep the velocity of their tracks. The path flies that
+/// velocity for the time horizon and stops, or, where nothing is in the way, flies to the target; accelerations are
+/// bounded, and where a half-space is violated now more of the acceleration is used, as jink does in an emergency.
 class OrcaPilot final : public Rival {
  public:
   explicit OrcaPilot(const planner::HorizonSettings& settings, const OrcaSettings& orca = {})

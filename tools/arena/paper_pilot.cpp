@@ -38,6 +38,7 @@ planner::Plan PaperPilot::plan(const bridge::PlanJob& job) {
 
   Motion motion(request, settings_.horizon, normal_acceleration(request, settings_.horizon));
   motion.follow(wished.path);
+  motion.fly_to_target();
   planner::Plan plan = judged(motion.path(), request, settings_.horizon.time);
   plan.evaluations = wished.evaluations;
   plan.schedule = wished.schedule;

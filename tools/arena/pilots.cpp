@@ -14,8 +14,8 @@
 namespace jink::arena {
 namespace {
 
-constexpr std::array<std::string_view, 7> kPilots{"jink", "paper", "momvo", "straight", "stop_and_wait", "orca",
-                                                  "rrt_star"};
+constexpr std::array<std::string_view, 7> kPilots{"jink",          "paper", "momvo",   "straight",
+                                                  "stop_and_wait", "orca",  "rrt_star"};
 
 std::unique_ptr<Rival> make_rival(std::string_view name, const bridge::PlannerTaskSettings& settings,
                                   const planner::PaperSettings& paper) {

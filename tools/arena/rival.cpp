@@ -9,10 +9,10 @@
 namespace jink::arena {
 namespace {
 
-constexpr double kRounding = 1e-9;   // s, of the companion's clock
-constexpr double kSlope = 0.1;       // s, over which a known path's present velocity is taken
-constexpr double kSameTime = 1e-6;   // s, between contacts that count as simultaneous
-constexpr double kAtTarget = 1e-6;   // m
+constexpr double kRounding = 1e-9;  // s, of the companion's clock
+constexpr double kSlope = 0.1;      // s, over which a known path's present velocity is taken
+constexpr double kSameTime = 1e-6;  // s, between contacts that count as simultaneous
+constexpr double kAtTarget = 1e-6;  // m
 
 }  // namespace
 

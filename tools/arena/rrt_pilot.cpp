@@ -11,13 +11,13 @@ namespace jink::arena {
 namespace {
 
 constexpr std::uint64_t kRrtStream = 0x7272742aULL;  // "rrt*" in ASCII: apart from the other users of the seed
-constexpr double kLookShare = 0.75;   // of the time looked ahead, that the goal is away at cruise speed
-constexpr double kSlackShare = 0.5;   // of it, by which a place may be reached later
-constexpr double kAtTarget = 0.2;     // m
-constexpr double kOnTheWay = 1.5;     // m, to a goal that is not the target
-constexpr double kTouching = 0.01;    // m, left to a sphere that the start is too near to
-constexpr double kCornerMargin = 0.1; // m, kept beyond the margin, since the motion cuts the way's corners
-constexpr double kHintStep = 0.5;     // s, between the places of the previous plan that seed the search
+constexpr double kLookShare = 0.75;                  // of the time looked ahead, that the goal is away at cruise speed
+constexpr double kSlackShare = 0.5;                  // of it, by which a place may be reached later
+constexpr double kAtTarget = 0.2;                    // m
+constexpr double kOnTheWay = 1.5;                    // m, to a goal that is not the target
+constexpr double kTouching = 0.01;                   // m, left to a sphere that the start is too near to
+constexpr double kCornerMargin = 0.1;  // m, kept beyond the margin, since the motion cuts the way's corners
+constexpr double kHintStep = 0.5;      // s, between the places of the previous plan that seed the search
 
 /// Where the search looks: around the way to the goal, in the volume.
 planner::Box region(const planner::PathRequest& request, const Vec3& goal, double aside) {
@@ -34,6 +34,50 @@ planner::TimedPath as_path(const std::vector<SpaceTime>& way) {
   return path;
 }
 
+/// A path that could be flown.
+struct Candidate {
+  planner::TimedPath path;
+  bool is_previous = false;
+  bool is_emergency = false;
+};
+
+/// The one that keeps the margin and is at the target first, the way from its end being straight; the previous plan,
+/// unless another one is clearly better. Null where none keeps the margin.
+Candidate* best_with_margin(std::vector<Candidate>& candidates, const planner::PathRequest& request,
+                            const planner::HorizonSettings& settings) {
+  Candidate* best = nullptr;
+  double least = planner::kInfinity;
+  for (Candidate& candidate : candidates) {
+    if (!check(candidate.path, request, request.margin, settings.time).free()) continue;
+    const planner::TimedPoint& end = candidate.path.back();
+    const double time = end.t + (request.target - end.position).norm() / request.vehicle.cruise_speed;
+    const double cost = candidate.is_previous ? time / (1.0 + settings.keep_ratio) : time;
+    if (cost >= least) continue;
+    least = cost;
+    best = &candidate;
+  }
+  return best;
+}
+
+Candidate& least_harmful(std::vector<Candidate>& candidates, const planner::PathRequest& request,
+                         const planner::HorizonSettings& settings) {
+  std::size_t best = 0;
+  std::vector<planner::Verification> checks;
+  for (const Candidate& candidate : candidates) checks.push_back(check(candidate.path, request, 0.0, settings.time));
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    if (less_harm(checks[i], checks[best])) best = i;
+  }
+  return candidates[best];
+}
+
+planner::Plan made(Candidate& candidate, const planner::PathRequest& request,
+                   const planner::HorizonSettings& settings) {
+  planner::Plan plan = judged(std::move(candidate.path), request, settings.time);
+  plan.kept_previous = candidate.is_previous;
+  plan.emergency = candidate.is_emergency;
+  return plan;
+}
+
 }  // namespace
 
 SpaceTimeProblem RrtPilot::problem(const planner::PathRequest& request, std::vector<planner::Track>& spheres) const {
@@ -41,7 +85,8 @@ SpaceTimeProblem RrtPilot::problem(const planner::PathRequest& request, std::vec
   spheres = kept_clear(request, horizon);
   const double look = horizon.time * (kLookShare + kSlackShare);
   std::erase_if(spheres, [&](const planner::Track& sphere) {
-    const double reach = (request.vehicle.cruise_speed + sphere.velocity.norm() + sphere.acceleration.norm() * look) * look;
+    const double reach =
+        (request.vehicle.cruise_speed + sphere.velocity.norm() + sphere.acceleration.norm() * look) * look;
     return (sphere.position - request.position).norm() - sphere.radius > reach + horizon.lateral_range;
   });
   for (planner::Track& sphere : spheres) {
@@ -65,56 +110,48 @@ SpaceTimeProblem RrtPilot::problem(const planner::PathRequest& request, std::vec
   return problem;
 }
 
+std::vector<SpaceTime> RrtPilot::search(const bridge::PlanJob& job) const {
+  std::vector<planner::Track> spheres;
+  const SpaceTimeProblem asked = problem(job.request, spheres);
+  std::vector<SpaceTime> hints;
+  if (!job.previous.empty()) {
+    const double last = std::min(kLookShare * settings_.horizon.time, job.previous.back().t);
+    for (double t = kHintStep; t < last; t += kHintStep)
+      hints.push_back({t, planner::sample(job.previous, t).position});
+  }
+  return search_space_time(asked, search_, hints, settings_.seed ^ kRrtStream, job.number);
+}
+
 planner::Plan RrtPilot::plan(const bridge::PlanJob& job) {
   const planner::PathRequest& request = job.request;
   const planner::HorizonSettings& horizon = settings_.horizon;
-  const auto keeps_margin = [&](const planner::TimedPath& path) {
-    return check(path, request, request.margin, horizon.time).free();
-  };
-  Motion undisturbed(request, horizon, normal_acceleration(request, horizon));
+  const double normal = normal_acceleration(request, horizon);
+  Motion undisturbed(request, horizon, normal);
   undisturbed.fly_to_target();
-  if (keeps_margin(undisturbed.path())) return judged(undisturbed.path(), request, horizon.time);
+  if (check(undisturbed.path(), request, request.margin, horizon.time).free())
+    return judged(undisturbed.path(), request, horizon.time);
 
-  std::vector<planner::Track> spheres;
-  const SpaceTimeProblem asked = problem(request, spheres);
-  std::vector<SpaceTime> hints;
-  if (!job.previous.empty()) {
-    const double last = kLookShare * horizon.time;
-    for (double t = kHintStep; t < std::min(last, job.previous.back().t); t += kHintStep)
-      hints.push_back({t, planner::sample(job.previous, t).position});
-  }
-  const std::uint64_t seed = settings_.seed ^ kRrtStream;
-  const std::vector<SpaceTime> way = search_space_time(asked, search_, hints, seed, job.number);
+  const planner::TimedPath way = as_path(search(job));
+  std::vector<Candidate> candidates;
+  if (!job.previous.empty()) candidates.push_back({planner::remainder(job.previous, 0.0), true, false});
+  Motion on(request, horizon, normal);
+  on.follow(way);
+  Motion waiting = on;
+  on.fly_to_target();
+  waiting.stop();
+  candidates.push_back({on.path(), false, false});
+  candidates.push_back({waiting.path(), false, false});
+  if (Candidate* best = best_with_margin(candidates, request, horizon)) return made(*best, request, horizon);
 
-  std::vector<planner::TimedPath> candidates;
-  Motion motion(request, horizon, normal_acceleration(request, horizon));
-  motion.follow(as_path(way));
-  candidates.push_back(motion.path());
-  const bool has_previous = !job.previous.empty();
-  if (has_previous) candidates.push_back(planner::remainder(job.previous, 0.0));
-  const bool new_is_free = keeps_margin(candidates[0]);
-  const bool old_is_free = has_previous && keeps_margin(candidates[1]);
-  if (new_is_free || old_is_free) {
-    const bool keep = old_is_free && (!new_is_free || candidates[1].back().t <=
-                                                          (1.0 + horizon.keep_ratio) * candidates[0].back().t);
-    planner::Plan plan = judged(std::move(candidates[keep ? 1 : 0]), request, horizon.time);
-    plan.kept_previous = keep;
-    return plan;
-  }
-  for (const bool follows : {true, false}) {
-    Motion hard(request, horizon, hardest_acceleration(request, horizon));
-    follows ? hard.follow(as_path(way)) : hard.stop(true);
-    candidates.push_back(hard.path());
-  }
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    if (less_harm(check(candidates[i], request, 0.0, horizon.time), check(candidates[best], request, 0.0, horizon.time)))
-      best = i;
-  }
-  planner::Plan plan = judged(std::move(candidates[best]), request, horizon.time);
-  plan.emergency = best + 2 >= candidates.size();
-  plan.kept_previous = has_previous && best == 1;
-  return plan;
+  const double hardest = hardest_acceleration(request, horizon);
+  Motion hard(request, horizon, hardest);
+  hard.follow(way);
+  hard.stop();
+  candidates.push_back({hard.path(), false, true});
+  Motion stop(request, horizon, hardest);
+  stop.stop(true);
+  candidates.push_back({stop.path(), false, true});
+  return made(least_harmful(candidates, request, horizon), request, horizon);
 }
 
 }  // namespace jink::arena

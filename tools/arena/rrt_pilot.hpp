@@ -12,9 +12,9 @@ namespace jink::arena {
 /// Flies undisturbed where that keeps the margin. Else searches space and time with RRT* (space_time_search.hpp) at
 /// cruise speed towards the target, or towards the point of the straight line that lies three quarters of the time
 /// looked ahead away; obstacles move as their tracks predict. The way found is then flown with bounded speed and
-/// acceleration, and that motion is checked. The previous plan seeds the search, and is kept while it is free and the
-/// new one is not clearly better, as jink does it. Where nothing keeps the margin, it flies what does the least harm
-/// among the new way, the old one and a hard stop.
+/// acceleration, and that motion is checked: on to the target, and with a stop at the way's end. The previous plan
+/// seeds the search, and is kept while it is free and the new one is not clearly better, as jink does it. Where nothing
+/// keeps the margin, it flies what does the least harm among the new way, the old one and a hard stop.
 ///
 /// The budget is a number of iterations: the wall clock has no say.
 class RrtPilot final : public Rival {
@@ -24,6 +24,7 @@ class RrtPilot final : public Rival {
   planner::Plan plan(const bridge::PlanJob& job) override;
 
  private:
+  [[nodiscard]] std::vector<SpaceTime> search(const bridge::PlanJob& job) const;
   [[nodiscard]] SpaceTimeProblem problem(const planner::PathRequest& request,
                                          std::vector<planner::Track>& spheres) const;
 

@@ -67,7 +67,8 @@ class SpaceTimeSpace final : public ob::RealVectorStateSpace {
     constexpr double kUnreachable = 100.0;  // per metre that is missing
     const SpaceTime from = place(a);
     const SpaceTime to = place(b);
-    const double missing = problem_.speed * (least_time(problem_, from.position, to.position) - std::abs(to.t - from.t));
+    const double missing =
+        problem_.speed * (least_time(problem_, from.position, to.position) - std::abs(to.t - from.t));
     return (to.position - from.position).norm() + kUnreachable * std::max(0.0, missing);
   }
 
@@ -227,9 +228,8 @@ std::vector<SpaceTime> search_space_time(const SpaceTimeProblem& problem, const 
   bounds.setLow(3, 0.0);
   bounds.setHigh(3, diagonal / std::min(problem.speed, problem.climb) + problem.slack + 1.0);
   space->setBounds(bounds);
-  space->setStateSamplerAllocator([&](const ob::StateSpace* of) {
-    return std::make_shared<Sampler>(of, problem, hints, seed, stream);
-  });
+  space->setStateSamplerAllocator(
+      [&](const ob::StateSpace* of) { return std::make_shared<Sampler>(of, problem, hints, seed, stream); });
   const auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker([](const ob::State*) { return true; });  // edges are checked, with their ends
   information->setMotionValidator(std::make_shared<Edges>(information, problem));
@@ -244,6 +244,7 @@ std::vector<SpaceTime> search_space_time(const SpaceTimeProblem& problem, const 
 
   og::RRTstar planner(information);
   planner.setRange(settings.range);
+  planner.setKNearest(false);  // looking at all for the k nearest would sort all
   planner.setProblemDefinition(definition);
   planner.setNearestNeighbors<ompl::NearestNeighborsLinear>();
   ob::IterationTerminationCondition iterations(static_cast<unsigned>(settings.iterations));

@@ -34,9 +34,9 @@ struct SpaceTimeProblem {
 };
 
 struct SpaceTimeSettings {
-  int iterations = 800;   ///< of RRT*, each one sample
-  double range = 3.0;     ///< m, longest edge
-  double hurry = 0.5;     ///< weight of time, as length at `speed`, against length
+  int iterations = 800;  ///< of RRT*, each one sample
+  double range = 3.0;    ///< m, longest edge
+  double hurry = 0.5;    ///< weight of time, as length at `speed`, against length
 };
 
 /// Whether the straight even motion between two places is possible: forward in time, within speed and climb, clear of

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "judge.hpp"
+#include "tools/arena/oracle/judge.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace jink::worlds {
@@ -19,11 +20,36 @@ std::string_view to_string(Verdict verdict) {
   return "?";
 }
 
-Judgement judge(const config::Scenario& scenario, const JudgeOptions& options) {
+namespace {
+
+Judgement judge_team(const config::Scenario& scenario, const JudgeOptions& options) {
   Judgement judgement;
-  if (certainly_impossible(scenario, options)) {
+  std::vector<Flight> flights = find_flights(scenario, options);
+  if (!flights.empty()) {
+    judgement.verdict = Verdict::kSolvable;
+    judgement.flight = std::move(flights.front());
+    judgement.others.assign(std::make_move_iterator(flights.begin() + 1), std::make_move_iterator(flights.end()));
+    return judgement;
+  }
+  for (std::size_t k = 0; k <= scenario.vehicles.size(); ++k) {
+    if (certainly_impossible(alone(scenario, k), options)) judgement.verdict = Verdict::kImpossible;
+  }
+  return judgement;
+}
+
+}  // namespace
+
+// The proof is dearer than a narrow search, which most worlds need no more than; a wide one is the dearest.
+Judgement judge(const config::Scenario& scenario, const JudgeOptions& options) {
+  if (!scenario.vehicles.empty()) return judge_team(scenario, options);
+  Judgement judgement;
+  std::optional<Flight> flight = find_flight(scenario, options, Effort::kNarrow);
+  if (!flight && certainly_impossible(scenario, options)) {
     judgement.verdict = Verdict::kImpossible;
-  } else if (auto flight = find_flight(scenario, options)) {
+    return judgement;
+  }
+  if (!flight) flight = find_flight(scenario, options, Effort::kWide);
+  if (flight) {
     judgement.verdict = Verdict::kSolvable;
     judgement.flight = *std::move(flight);
   }

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "judge.hpp"
 #include "sim/world.hpp"
+#include "tools/arena/oracle/judge.hpp"
 
 namespace jink::worlds {
 namespace {
@@ -31,6 +31,9 @@ constexpr double kAround = 8.0;       // m, of the mission that is searched wher
 constexpr double kLastLeg = 1.0;      // s, from rest at the last state to rest at the target
 constexpr double kLastLength = 0.44;  // m, at most, of that leg: sqrt(3) / 2 · 0.5 m and a little
 constexpr double kCoarse = 1.0;       // m, cells for which few states are kept, so that a beam does not bunch
+constexpr double kLongest = 4.0;      // straight flights at full speed, that a flight may take
+constexpr double kPatience = 30.0;    // s, besides
+constexpr double kMostChange = 2.0;   // m/s, in a step: more adds states that lead nowhere else
 constexpr double kBend = 0.002;       // m, that the true flight may be off its polyline
 
 struct State {
@@ -92,18 +95,19 @@ double time_to_rest(double distance, double v, double acceleration, double limit
   return (2.0 * limit - u) / acceleration + (ahead - (limit * limit - 0.5 * u * u) / acceleration) / limit;
 }
 
-struct Effort {
-  std::size_t beam;  ///< states that are kept of each step
-  int per_cell;      ///< of them in one coarse cell
-  double slack;      ///< m, added to the margin for what the obstacles do between samples
+/// What an Effort means.
+struct Beam {
+  std::size_t width;  ///< states that are kept of each step
+  int per_cell;       ///< of them in one coarse cell
+  double slack;       ///< m, added to the margin for what the obstacles do between samples
 };
 
 class Search {
  public:
-  Search(const config::Scenario& scenario, const JudgeOptions& options, const Effort& effort)
-      : world_(scenario), options_(options), effort_(effort), box_(box_of(scenario)) {
+  Search(const config::Scenario& scenario, const JudgeOptions& options, const Beam& beam)
+      : world_(scenario), options_(options), beam_(beam), box_(box_of(scenario)) {
     const planner::VehicleLimits& limits = scenario.vehicle;
-    const double change = options.acceleration_share * limits.max_acceleration * kStep + 1e-9;
+    const double change = std::min(kMostChange, options.acceleration_share * limits.max_acceleration * kStep) + 1e-9;
     const int most = static_cast<int>(change);
     for (int x = -most; x <= most; ++x) {
       for (int y = -most; y <= most; ++y) {
@@ -115,7 +119,9 @@ class Search {
   }
 
   std::optional<Flight> run() {
-    const int steps = static_cast<int>(world_.scenario().time_limit / kStep);
+    const config::Scenario& scenario = world_.scenario();
+    const double straight = (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed;
+    const int steps = static_cast<int>(std::min(scenario.time_limit, kLongest * straight + kPatience) / kStep);
     layers_.push_back({State{Index::Zero(), Index::Zero(), -1, 0.0}});
     for (int step = 0; step <= steps && !layers_.back().empty(); ++step) {
       place_movers(step * kStep);
@@ -145,7 +151,7 @@ class Search {
       for (std::size_t j = 0; j <= kSamples; ++j) {
         const planner::Sphere sphere = world_.sphere(i, t + kStep * static_cast<double>(j) / kSamples);
         mover.centers[j] = sphere.center;
-        mover.keep_off = sphere.radius + world_.scenario().vehicle.radius + options_.margin + effort_.slack;
+        mover.keep_off = sphere.radius + world_.scenario().vehicle.radius + options_.margin + beam_.slack;
       }
       mover.middle = mover.centers[kSamples / 2];
       mover.reach = 0.0;
@@ -236,11 +242,22 @@ class Search {
         const double place = std::floor(state.place[axis] * kGrid / kCoarse);
         cell = cell << 16U | static_cast<std::uint16_t>(static_cast<int>(place));
       }
-      if (++kept_in[cell] > effort_.per_cell) continue;
+      if (++kept_in[cell] > beam_.per_cell) continue;
       kept.push_back(state);
-      if (kept.size() >= effort_.beam) break;
+      if (kept.size() >= beam_.width) break;
     }
     return kept;
+  }
+
+  /// From rest at `from` to rest at the target: half of the time it speeds up, half of it it brakes.
+  [[nodiscard]] std::vector<TimedPoint> last_leg(const Vec3& from, double t) const {
+    std::vector<TimedPoint> leg;
+    for (int j = 0; j <= 2 * kSamples; ++j) {
+      const double u = static_cast<double>(j) / (2 * kSamples);
+      const double share = u < 0.5 ? 2.0 * u * u : 1.0 - 2.0 * (1.0 - u) * (1.0 - u);
+      leg.push_back({t + u * kLastLeg, (1.0 - share) * from + share * world_.scenario().target});
+    }
+    return leg;
   }
 
   /// From a state at rest near the target, where the last leg is free.
@@ -249,14 +266,13 @@ class Search {
     const Vec3& target = world_.scenario().target;
     for (std::size_t i = 0; i < layer.size(); ++i) {
       if ((layer[i].velocity != 0).any() || (position(layer[i]) - target).norm() > kLastLength) continue;
+      std::vector<TimedPoint> leg = last_leg(position(layer[i]), t);
+      if (leg.back().t > world_.scenario().time_limit) return std::nullopt;
+      // Where somebody stands at the target, this alone is most of the work saved.
+      if (true_clearance(world_.scenario(), leg) < options_.margin + kBend) continue;
       Flight flight = trace(static_cast<int>(i));
-      for (int j = 1; j <= 2 * kSamples; ++j) {
-        const double u = static_cast<double>(j) / (2 * kSamples);
-        const double share = u < 0.5 ? 2.0 * u * u : 1.0 - 2.0 * (1.0 - u) * (1.0 - u);
-        flight.path.push_back({t + u * kLastLeg, (1.0 - share) * position(layer[i]) + share * target});
-      }
-      flight.arrival_time = t + kLastLeg;
-      if (flight.arrival_time > world_.scenario().time_limit) continue;
+      flight.arrival_time = leg.back().t;
+      flight.path.insert(flight.path.end(), leg.begin() + 1, leg.end());
       flight.min_clearance = true_clearance(world_.scenario(), flight.path);
       if (flight.min_clearance >= options_.margin + kBend) return flight;
     }
@@ -284,7 +300,7 @@ class Search {
 
   sim::World world_;
   JudgeOptions options_;
-  Effort effort_;
+  Beam beam_;
   planner::Box box_;
   std::vector<Index> changes_;              ///< of the velocity in a step
   std::vector<std::vector<State>> layers_;  ///< the states at each step's time
@@ -294,12 +310,15 @@ class Search {
 
 }  // namespace
 
+std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options, Effort effort) {
+  constexpr Beam kNarrow{500, 3, 0.02};
+  constexpr Beam kWide{3000, 6, 0.06};
+  return Search(scenario, options, effort == Effort::kNarrow ? kNarrow : kWide).run();
+}
+
 std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options) {
-  constexpr std::array<Effort, 2> kEfforts = {Effort{500, 3, 0.02}, Effort{3000, 6, 0.06}};
-  for (const Effort& effort : kEfforts) {
-    if (auto flight = Search(scenario, options, effort).run()) return flight;
-  }
-  return std::nullopt;
+  auto flight = find_flight(scenario, options, Effort::kNarrow);
+  return flight ? flight : find_flight(scenario, options, Effort::kWide);
 }
 
 }  // namespace jink::worlds

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <variant>
 
-#include "judge.hpp"
 #include "sim/world.hpp"
-#include "surface_distance.hpp"
+#include "tools/arena/oracle/judge.hpp"
+#include "tools/arena/oracle/surface_distance.hpp"
 
 namespace jink::worlds {
 namespace {

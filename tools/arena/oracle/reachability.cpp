@@ -5,10 +5,10 @@
 #include <variant>
 #include <vector>
 
-#include "cells.hpp"
-#include "judge.hpp"
 #include "sim/world.hpp"
-#include "surface_distance.hpp"
+#include "tools/arena/oracle/cells.hpp"
+#include "tools/arena/oracle/judge.hpp"
+#include "tools/arena/oracle/surface_distance.hpp"
 
 namespace jink::worlds {
 namespace {
@@ -124,9 +124,13 @@ class Reachability {
     return farthest.squaredNorm() < ball.radius * ball.radius;
   }
 
-  /// Whether all of the cell is too near to the shape, which is convex, so that its corners tell. `low` is relative to
-  /// the reference point.
+  /// Whether all of the cell is too near to the shape, which is convex, so that its corners tell, and for a box, which
+  /// is symmetric, the farthest of them. `low` is relative to the reference point.
   [[nodiscard]] bool in_shape(const Vec3& low, const config::Shape& shape) const {
+    if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
+      const Vec3 farthest = low.cwiseAbs().cwiseMax((low + cell_).cwiseAbs());
+      return surface_distance(*box, farthest) < world_.scenario().vehicle.radius;
+    }
     for (unsigned corner = 0; corner < 8; ++corner) {
       const Vec3 place = low + cell_.cwiseProduct(Vec3(corner & 1U, corner >> 1U & 1U, corner >> 2U));
       if (surface_distance(shape, place) >= world_.scenario().vehicle.radius) return false;
