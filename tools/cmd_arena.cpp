@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <memory>
@@ -176,15 +177,13 @@ arena::Results begin(const arena::CampaignSettings& settings, const ArenaOptions
   const fs::path file = arena::results_path(options.out);
   arena::Results results;
   results.settings = settings;
-  std::error_code error;
-  if (!fs::exists(file, error)) {
+  if (!arena::has_begun(file)) {
     if (options.resume) printer.line(fmt::format("{} holds no campaign: this is the beginning of one", options.out));
     return results;
   }
   if (!options.resume)
     throw UsageError(fmt::format(
         "--out: '{}' holds a campaign; --resume goes on with it, another folder begins a new one", options.out));
-  if (fs::file_size(file, error) == 0) return results;
   arena::Results earlier = arena::read_results(file);
   const auto differ = arena::differences(earlier.settings, options.out, settings, "this call");
   if (!differ.empty())
@@ -265,6 +264,19 @@ int run_write(const ArenaOptions& options, const Printer& printer) {
   return kExitReached;
 }
 
+/// An option without effect is refused: a merged campaign has the settings of its parts, a written world needs none.
+void refuse_useless(const CLI::App& app) {
+  std::vector<std::string> useless{"--families", "--pilots", "--runs",    "--resume", "--shard", "--oracle",
+                                   "--logs",     "--seed",   "--threads", "--config", "--set"};
+  const char* const mode = app.count("--merge") > 0 ? "--merge" : "--write";
+  if (app.count(mode) == 0) return;
+  const bool merges = mode == std::string_view("--merge");
+  for (const char* name : merges ? std::array{"--tiers", "--write"} : std::array{"--out", "--json"})
+    useless.emplace_back(name);
+  for (const std::string& name : useless)
+    if (app.count(name) > 0) throw UsageError(fmt::format("{}: has no effect beside {}", name, mode));
+}
+
 int run(const ArenaOptions& options) {
   const Printer printer(options.common.json == "-");
   try {
@@ -283,42 +295,39 @@ Subcommand add_arena(CLI::App& jink) {
       "arena", "fly many seeded worlds closed loop in virtual time, with jink and its rivals, and make tables of it");
   const auto options = std::make_shared<ArenaOptions>();
   const auto names = [](std::span<const std::string_view> all) { return fmt::format("{}", fmt::join(all, ", ")); };
-  auto* families = app->add_option("--families", options->families,
-                                   "families of worlds, A,B or all: " + names(sim::world_families()))
-                       ->capture_default_str();
-  auto* pilots = app->add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(arena::pilots()))
-                     ->capture_default_str();
-  auto* tiers =
-      app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
-          ->capture_default_str();
-  auto* runs =
-      app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
-          ->check(CLI::Range(1, kMostRuns))
-          ->capture_default_str();
+  app->add_option("--families", options->families, "families of worlds, A,B or all: " + names(sim::world_families()))
+      ->capture_default_str();
+  app->add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(arena::pilots()))
+      ->capture_default_str();
+  app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
+      ->capture_default_str();
+  app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
+      ->check(CLI::Range(1, kMostRuns))
+      ->capture_default_str();
   app->add_option("--out", options->out, "folder for the results")->capture_default_str();
-  auto* resume = app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
-  auto* shard = app->add_option("--shard", options->shard,
-                                "K/N: fly the K-th of N parts, for several machines; --merge puts them together")
-                    ->capture_default_str();
-  auto* oracle =
-      app->add_option("--oracle", options->oracle,
-                      "on: ask an independent search, which knows the future, whether worlds in which nobody\n"
-                      "arrived have a way through; those that have none count apart")
-          ->check(CLI::IsMember({"on", "off"}))
-          ->capture_default_str();
+  app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
+  app->add_option("--shard", options->shard,
+                  "K/N: fly the K-th of N parts, for several machines; --merge puts them together")
+      ->capture_default_str();
+  app->add_option("--oracle", options->oracle,
+                  "on: ask an independent search, which knows the future, whether worlds in which nobody\n"
+                  "arrived have a way through; those that have none count apart")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
   app->add_option("--logs", options->logs, "off: failed flights leave their scenario but no log")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  auto* merge = app->add_option("--merge", options->merge, "put the results in these folders together into --out")
-                    ->expected(1, kMostShards);
-  auto* write =
-      app->add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
-          ->expected(2);
-  for (CLI::Option* other : {families, pilots, tiers, runs, resume, shard, oracle, write}) merge->excludes(other);
+  app->add_option("--merge", options->merge, "put the results in these folders together into --out")
+      ->expected(1, kMostShards);
+  app->add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
+      ->expected(2);
   options->common.add_to(*app);
   app->get_option("--threads")->description("flights at once, 1 to 256 (default: one for each core)");
   app->footer(kFooter);
-  return {app, [options] { return run(*options); }};
+  return {app, [options, app] {
+            refuse_useless(*app);
+            return run(*options);
+          }};
 }
 
 }  // namespace jink::tools

@@ -133,7 +133,10 @@ TEST(Results, ALastLineThatIsCutOffDoesNotCountWhereverItIsCut) {
     EXPECT_TRUE(cut.cut_off) << length;
     EXPECT_EQ(cut.flights.size(), results.flights.size() - 1) << length;
   }
+  EXPECT_TRUE(has_begun(file));
   EXPECT_TRUE(has(refusal_of(file, text.substr(0, 30)), "holds no header"));
+  EXPECT_FALSE(has_begun(file));
+  EXPECT_FALSE(has_begun(folder.path() / "none"));
 }
 
 TEST(Results, WhatNoCampaignWroteIsNamedWithItsLine) {

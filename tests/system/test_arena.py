@@ -40,6 +40,8 @@ BAD_USAGE = [
     (["--out", "/proc/no/such"], ["--out", "/proc/no/such"]),
     (["--merge", "no-such-folder"], ["no-such-folder", "cannot be read"]),
     (["--merge", "a", "--runs", "3"], ["--merge", "--runs"]),
+    (["--merge", "a", "--seed", "3"], ["--merge", "--seed"]),
+    (["--write", "crossing:1", "x.yaml", "--set", "horizon.margin=1"], ["--write", "--set"]),
     (["--write", "crossing", "x.yaml"], ["--write", "'crossing'", "FAMILY:SEED"]),
     (["--write", "crossing:-1", "x.yaml"], ["--write", "'crossing:-1'"]),
     (["--write", "bogus:1", "x.yaml"], ["--write", "'bogus'"]),
@@ -174,9 +176,10 @@ def resumed(arena):
     cut = arena.folder / "cut"
     cut.mkdir()
     text = (arena.folder / "whole" / "flights.jsonl").read_text()
-    (cut / "flights.jsonl").write_text(text[: 2 * len(text) // 3])
-    said = arena.fly("cut", *SMALL, "--resume")
-    check("cut off" in said and arena.result("cut") == whole, "goes on behind a line that was cut off")
+    for length, words in ((2 * len(text) // 3, "cut off"), (100, "holds no campaign")):
+        (cut / "flights.jsonl").write_text(text[:length])
+        said = arena.fly("cut", *SMALL, "--resume")
+        check(words in said and arena.result("cut") == whole, f"goes on behind what was cut off after {length} bytes")
 
 
 def interrupted(arena):

@@ -99,6 +99,11 @@ std::filesystem::path results_path(const std::filesystem::path& out) {
   return out / "flights.jsonl";
 }
 
+bool has_begun(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::exists(file, error) && read_text(file).find('\n') != std::string::npos;
+}
+
 Results read_results(const std::filesystem::path& file) {
   std::istringstream text(read_text(file));
   Results results;

@@ -32,6 +32,9 @@ struct Results {
 
 [[nodiscard]] std::filesystem::path results_path(const std::filesystem::path& out);
 
+/// Whether a results file has begun: there is a file, and its header is whole.
+[[nodiscard]] bool has_begun(const std::filesystem::path& file);
+
 /// Reads a results file. A last line without its end is what a killed process leaves: it does not count. Throws
 /// ResultsError with file and line for anything else that no campaign wrote, and for a flight that the header's
 /// settings do not have.
