@@ -149,6 +149,21 @@ def replay(arena, failed):
     check(report.stat().st_size > 10000, f"report {report.name}")
 
 
+def rivals(arena):
+    """Who flies the straight line hits something; that flight is replayed as that pilot's, and its log is not taken for jink's."""
+    arena.fly("rivals", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
+    table = json.loads((arena.folder / "rivals" / "table.json").read_text())
+    check([row["pilot"] for row in table["table"]] == ["jink", "straight"], "a row for each pilot")
+    failure = next(f for f in table["failures"] if f["pilot"] == "straight")
+    check(failure["outcome"] == "collision" and " --pilot straight " in failure["replay"], failure["replay"])
+    command = shlex.split(failure["replay"])
+    done = subprocess.run([arena.program, *command[1:]], capture_output=True, text=True, timeout=300, cwd=arena.folder)
+    check(done.returncode == 1 and failure["reason"] in done.stdout, "replayed: the same collision")
+    log = command[command.index("--log") + 1]
+    done = subprocess.run([arena.program, "replay", log], capture_output=True, text=True, timeout=60, cwd=arena.folder)
+    refused(done, [log, "straight"])
+
+
 def same_however(arena):
     whole = arena.result("whole")
     arena.fly("threads", *SMALL, "--threads", 3)
@@ -211,7 +226,7 @@ def test(program):
         arena = Campaigns(pathlib.Path(program).resolve(), pathlib.Path(name))
         bad_usage(arena)
         replay(arena, files(arena))
-        for case in (same_however, resumed, interrupted, written):
+        for case in (rivals, same_however, resumed, interrupted, written):
             print(f"== {case.__name__}", flush=True)
             case(arena)
 

@@ -13,7 +13,7 @@ namespace jink::arena {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // nothing to draw
-constexpr double kLabels = 256.0, kPanel = 200.0, kGap = 26.0;      // px
+constexpr double kLabels = 256.0, kPanel = 200.0, kGap = 36.0;      // px
 constexpr double kTop = 44.0, kLine = 15.0, kBetween = 9.0;
 
 // Told apart with colour blindness too (Okabe and Ito 2008).

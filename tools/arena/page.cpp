@@ -18,7 +18,7 @@ constexpr const char* kHead = R"(<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>jink arena</title>
 <style>
-body { margin: 0 auto; padding: 14px 22px 30px; max-width: 1480px; background: #f4f6f8; color: #1c2530;
+body { margin: 0 auto; padding: 14px 22px 30px; max-width: 1520px; background: #f4f6f8; color: #1c2530;
   font: 14px/1.45 system-ui, -apple-system, "Segoe UI", Roboto, "Liberation Sans", Arial, sans-serif; }
 h1 { font-size: 20px; margin: 0 0 4px; }
 h2 { font-size: 15px; margin: 22px 0 6px; }

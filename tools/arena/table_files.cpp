@@ -94,6 +94,11 @@ std::string fixed(double value, int digits = 2) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
+/// Of a plan's time: some pilots take microseconds.
+std::string milliseconds(double value) {
+  return fixed(value, value < 1.0 ? 3 : 1);
+}
+
 /// A column for people.
 struct Column {
   const char* name;
@@ -127,8 +132,8 @@ std::vector<Column> reading_columns() {
           {"length", [](const Row& r) { return fixed(r.length.median, 3); }, false},
           {"plan p50 / p99 / max ms",
            [](const Row& r) {
-             return fmt::format("{} / {} / {}", fixed(r.plan_ms.quantile(0.5), 1), fixed(r.plan_ms.quantile(0.99), 1),
-                                fixed(r.plan_ms.max(), 1));
+             return fmt::format("{} / {} / {}", milliseconds(r.plan_ms.quantile(0.5)),
+                                milliseconds(r.plan_ms.quantile(0.99)), milliseconds(r.plan_ms.max()));
            }},
           {"late %", [](const Row& r) { return r.late_plans.of == 0 ? "-" : percent(r.late_plans.value()); }, false},
           {"missed", [](const Row& r) { return fmt::format("{}", r.deadline_misses); }, false}};

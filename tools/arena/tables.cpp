@@ -133,6 +133,10 @@ Summary summarise(const Results& results) {
     put(flight, verdicts, samples[{"all", flight.tier, flight.pilot}]);
     if (!flight.reached()) summary.failures.push_back(flight);
   }
+  const std::vector<std::string>& pilots = results.settings.pilots;
+  std::stable_sort(summary.failures.begin(), summary.failures.end(), [&](const auto& a, const auto& b) {
+    return std::find(pilots.begin(), pilots.end(), a.pilot) < std::find(pilots.begin(), pilots.end(), b.pilot);
+  });
   for (const std::string& family : results.settings.families) add_rows(family, results.settings, samples, summary.rows);
   add_rows("all", results.settings, samples, summary.totals);
   summary.expected = jobs_of(results.settings).size();

@@ -44,7 +44,7 @@ struct Row {
 struct Summary {
   std::vector<Row> rows;    ///< by family, then tier, then pilot, in the order of the settings; without empty ones
   std::vector<Row> totals;  ///< likewise, of all families
-  std::vector<FlightRecord> failures;  ///< not reached, by job
+  std::vector<FlightRecord> failures;  ///< not reached, by pilot, then job
   std::size_t expected = 0;            ///< flights of the shard
   std::size_t flights = 0;             ///< of these, done
   std::size_t unknown_worlds = 0;      ///< in which nobody arrived, and the oracle has no answer
