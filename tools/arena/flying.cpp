@@ -183,9 +183,12 @@ std::string replay_command(const std::filesystem::path& out, const FlightRecord&
 
 Verdict judge_world(const World& world) {
   switch (worlds::judge(sim::make_world(world.family, world.seed)).verdict) {
-    case worlds::Verdict::kSolvable: return Verdict::kSolvable;
-    case worlds::Verdict::kImpossible: return Verdict::kImpossible;
-    case worlds::Verdict::kUnknown: break;
+    case worlds::Verdict::kSolvable:
+      return Verdict::kSolvable;
+    case worlds::Verdict::kImpossible:
+      return Verdict::kImpossible;
+    case worlds::Verdict::kUnknown:
+      break;
   }
   return Verdict::kUnknown;
 }
