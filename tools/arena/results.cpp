@@ -195,6 +195,8 @@ void ResultsFile::append(const Json& line) {
 }
 
 void ResultsFile::write(const std::string& text) {
+  if (broken_) throw ResultsError(fmt::format("{}: could not be written before", file_.string()));
+  broken_ = true;
   std::size_t written = 0;
   while (written < text.size()) {
     const ssize_t n = ::write(descriptor_, text.data() + written, text.size() - written);
@@ -202,6 +204,7 @@ void ResultsFile::write(const std::string& text) {
     if (n <= 0) throw ResultsError(system_error(file_));
     written += static_cast<std::size_t>(n);
   }
+  broken_ = false;
 }
 
 }  // namespace jink::arena

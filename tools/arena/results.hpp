@@ -69,6 +69,7 @@ class ResultsFile {
 
   std::filesystem::path file_;
   int descriptor_ = -1;
+  bool broken_ = false;  // nothing may follow a line that could not be written to its end
 };
 
 }  // namespace jink::arena
