@@ -8,6 +8,7 @@
 #include "bridge/clock.hpp"
 #include "config/scenario.hpp"
 #include "sim/closed_loop.hpp"
+#include "tools/arena/pilots.hpp"
 #include "tools/command_line.hpp"
 #include "tools/flight_log.hpp"
 #include "tools/flight_replay.hpp"
@@ -27,6 +28,7 @@ struct ReplayOptions {
   std::string scenario;
   std::string log;
   std::string report;
+  std::string pilot = "jink";
   bool own_seed = false;  ///< --seed was given
 };
 
@@ -57,12 +59,16 @@ int replay_scenario(const ReplayOptions& options) {
   const bridge::SteadyClock pace;  // of the live line alone: the flight's time is virtual
   LiveFlight live(mission, settings.companion.stale_state, *background, &pace);
   loop.flight_observers = {&faults, &live};
+  loop.planner = [&](const bridge::PlannerTaskSettings& planning, double latency) {
+    return arena::make_pilot(options.pilot, planning, latency, settings.paper);
+  };
   std::unique_ptr<FlightLog> log;
   if (!options.log.empty()) {
     FlightLogOptions in_virtual_time;
     in_virtual_time.wait = true;
-    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings),
-                                      in_virtual_time);
+    nlohmann::ordered_json header = scenario_header(scenario, options.common.seed, settings);
+    header["pilot"] = options.pilot;
+    log = std::make_unique<FlightLog>(options.log, std::move(header), in_virtual_time);
     loop.flight_observers.push_back(log.get());
     loop.truth_observers.push_back(log.get());
   }
@@ -147,6 +153,8 @@ void describe(const FlightRecording& flight, const FlightComparison& comparison,
 
 int replay_flight(const ReplayOptions& options) {
   const Printer printer(options.common.json == "-");
+  if (options.pilot != "jink")
+    throw UsageError("--pilot: a replayed log has plans of jink; only a scenario is flown by others");
   if (!options.log.empty() || !options.report.empty())
     throw UsageError(std::string(options.log.empty() ? "--report" : "--log") +
                      ": a replayed log writes none; `jink report FLIGHT.jsonl` makes a report of it");
@@ -154,6 +162,9 @@ int replay_flight(const ReplayOptions& options) {
   FlightComparison comparison;
   try {
     flight.emplace(options.scenario);
+    if (flight->pilot() != "jink")
+      throw UsageError(
+          fmt::format("{}: its plans are of '{}'; only jink's can be made again", options.scenario, flight->pilot()));
     const ReplaySettings settings = replay_settings(options, *flight, printer);
     comparison = compare_plans(*flight, settings, [&](std::size_t plans) {
       if (plans % kLivePlans == 0) printer.live(fmt::format("{} plans made again", plans));
@@ -178,6 +189,10 @@ int run(const ReplayOptions& options) {
                                                                          : replay_scenario(options);
 }
 
+std::vector<std::string> pilot_names() {
+  return {arena::pilots().begin(), arena::pilots().end()};
+}
+
 }  // namespace
 
 Subcommand add_replay(CLI::App& jink) {
@@ -192,6 +207,9 @@ Subcommand add_replay(CLI::App& jink) {
       ->required();
   app->add_option("--log", options->log, "write a flight log (JSON Lines)");
   app->add_option("--report", options->report, "write an HTML flight report; needs --log");
+  app->add_option("--pilot", options->pilot, "who plans: jink, or one of its rivals in `jink arena`")
+      ->check(CLI::IsMember(pilot_names()))
+      ->capture_default_str();
   options->common.add_to(*app);
   return {app, [options, app] {
             options->own_seed = app->count("--seed") > 0;

@@ -111,5 +111,6 @@ Subcommand add_fly(CLI::App& jink);
 Subcommand add_doctor(CLI::App& jink);
 Subcommand add_report(CLI::App& jink);
 Subcommand add_export(CLI::App& jink);
+Subcommand add_arena(CLI::App& jink);
 
 }  // namespace jink::tools

@@ -200,6 +200,7 @@ FlightRecording::FlightRecording(const std::filesystem::path& log) : lines_(log)
   try {
     name_ = text_of(header, header.contains("scenario") ? "scenario" : "mission");
     version_ = text_of(header, "version");
+    if (header.contains("pilot")) pilot_ = text_of(header, "pilot");
     seed_ = count_of(header, "seed");
     const Json& parameters = member(header, "parameters");
     if (!parameters.is_object()) refuse("\"parameters\" is not an object");

@@ -34,6 +34,8 @@ class FlightRecording {
 
   [[nodiscard]] const std::string& name() const { return name_; }  ///< of the scenario or mission
   [[nodiscard]] const std::string& version() const { return version_; }
+  /// Who made the plans: jink, or a rival of the arena.
+  [[nodiscard]] const std::string& pilot() const { return pilot_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   /// Where the header stands, and its parameters: for config::recorded_settings().
   [[nodiscard]] const std::string& source() const { return source_; }
@@ -50,6 +52,7 @@ class FlightRecording {
  private:
   LogLines lines_;
   std::string name_, version_, source_;
+  std::string pilot_ = "jink";
   std::uint64_t seed_ = 1;
   std::vector<config::SettingText> parameters_;
   std::size_t without_inputs_ = 0;

@@ -40,6 +40,8 @@ BAD_USAGE = [
     (["plan", CROSSING, "--json", "/no/such/folder/x.json"], ["--json", "/no/such/folder/x.json"]),
     (["replay", CROSSING, "--log", "/no/such/folder/x.jsonl"], ["--log", "/no/such/folder/x.jsonl"]),
     (["replay", CROSSING, "--report", "x.html"], ["--report", "--log"]),
+    (["replay", CROSSING, "--pilot", "icarus"], ["--pilot", "icarus", "jink"]),
+    (["replay", "flight.jsonl", "--pilot", "straight"], ["--pilot", "scenario"]),
     (["sim", CROSSING, "--speed", "100"], ["--speed", "100", "20"]),
     (["sim", CONFIG / "missions" / "sitl.yaml"], ["sitl.yaml:", "format", "jink-mission/1", "jink-scenario/1"]),
     (["fly", CROSSING], ["crossing.yaml:", "format", "jink-scenario/1", "jink-mission/1"]),
@@ -95,7 +97,7 @@ def bad_values(jink, folder):
 
 
 def help_reads(jink):
-    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"]):
+    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"], ["arena"]):
         done = jink.run(*command, "--help")
         check(done.returncode == 0 and "Usage: jink" in done.stdout and not done.stderr, f"jink {' '.join(command)} --help")
 

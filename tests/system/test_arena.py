@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`jink arena` as users call it: files, resuming, shards, merging, Ctrl-C, replay of a failed flight, bad usage.
+
+    test_arena.py JINK
+"""
+
+import csv
+import html.parser
+import json
+import pathlib
+import re
+import shlex
+import signal
+import subprocess
+import tempfile
+import time
+import xml.etree.ElementTree
+
+import yaml
+
+from flight import check, main
+
+# A small search: it fails now and then, which is wanted here, and takes little time.
+QUICK = ["--set", "horizon.generations=4", "--set", "horizon.population=8", "--set", "companion.largest_replan_rate_hz=10"]
+SMALL = ["--families", "darts,gates", "--runs", 2, *QUICK]
+FILES = ["flights.jsonl", "flights.csv", "table.csv", "table.json", "table.md", "arena.html", "planner.yaml"]
+BAD_USAGE = [
+    (["--families", "crossing,bogus"], ["--families", "'bogus'", "crossing, head_on"]),
+    (["--families", "crossing,crossing"], ["--families", "'crossing' is there twice"]),
+    (["--families", ""], ["--families", "''"]),
+    (["--pilots", "icarus"], ["--pilots", "'icarus'", "jink"]),
+    (["--tiers", "wild"], ["--tiers", "'wild'", "perfect, realistic"]),
+    (["--runs", "0"], ["--runs", "0", "1 to 1000000"]),
+    (["--shard", "3/2"], ["--shard", "'3/2'", "K/N"]),
+    (["--shard", "0/2"], ["--shard", "'0/2'"]),
+    (["--shard", "1"], ["--shard", "'1'"]),
+    (["--oracle", "maybe"], ["--oracle", "maybe", "on", "off"]),
+    (["--threads", "0"], ["--threads", "0"]),
+    (["--set", "horizon.margn=1"], ["horizon.margn"]),
+    (["--out", "/proc/no/such"], ["--out", "/proc/no/such"]),
+    (["--merge", "no-such-folder"], ["no-such-folder", "cannot be read"]),
+    (["--merge", "a", "--runs", "3"], ["--merge", "--runs"]),
+    (["--merge", "a", "--seed", "3"], ["--merge", "--seed"]),
+    (["--write", "crossing:1", "x.yaml", "--set", "horizon.margin=1"], ["--write", "--set"]),
+    (["--write", "crossing", "x.yaml"], ["--write", "'crossing'", "FAMILY:SEED"]),
+    (["--write", "crossing:-1", "x.yaml"], ["--write", "'crossing:-1'"]),
+    (["--write", "bogus:1", "x.yaml"], ["--write", "'bogus'"]),
+    (["--write", "crossing:1", "/no/such/x.yaml"], ["/no/such/x.yaml", "cannot be written"]),
+]
+
+
+class Campaigns:
+    def __init__(self, program, folder):
+        self.program = program
+        self.folder = folder
+
+    def run(self, *arguments, seconds=300):
+        return subprocess.run([self.program, "arena", *map(str, arguments)], capture_output=True, text=True, timeout=seconds, cwd=self.folder)
+
+    def fly(self, out, *arguments, status=0):
+        done = self.run("--out", out, *arguments)
+        check(done.returncode == status, f"arena {' '.join(map(str, arguments[:3]))}: exit status {done.returncode}: {done.stderr.strip()}")
+        return done.stdout
+
+    def result(self, out):
+        """All that does not come from the wall clock, and where the files are."""
+        lines = [json.loads(line) for line in (self.folder / out / "flights.jsonl").read_text().splitlines()]
+        for line in lines:
+            line.pop("measured", None)
+            line.pop("shard", None), line.pop("shards", None)
+        table = json.loads((self.folder / out / "table.json").read_text())
+        for row in table["table"] + table["totals"]:
+            row.pop("measured")
+        table.pop("out")
+        for failure in table["failures"]:
+            failure.pop("replay")
+        return lines, table
+
+
+def refused(done, parts):
+    lines = done.stderr.strip().splitlines()
+    said = done.returncode == 2 and len(lines) == 1 and all(part in lines[0] for part in parts)
+    check(said, f"status {done.returncode}: {done.stderr.strip()}")
+
+
+def bad_usage(arena):
+    for arguments, parts in BAD_USAGE:
+        refused(arena.run(*arguments), parts)
+    check(not list(arena.folder.iterdir()), "nothing was left by any of these")
+
+
+class WellFormed(html.parser.HTMLParser):
+    """Every element is closed where it should be."""
+
+    EMPTY = {"meta", "br", "rect", "line", "circle"}
+
+    def __init__(self):
+        super().__init__()
+        self.open = []
+        self.counts = {}
+
+    def handle_starttag(self, tag, attributes):
+        self.counts[tag] = self.counts.get(tag, 0) + 1
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if tag not in self.EMPTY:
+            assert self.open and self.open.pop() == tag, f"</{tag}> closes nothing"
+
+
+def files(arena):
+    said = arena.fly("whole", *SMALL, "--json", "whole.json")
+    folder = arena.folder / "whole"
+    check(all((folder / name).stat().st_size > 0 for name in FILES), "all files are there")
+    check(json.loads((arena.folder / "whole.json").read_text()) == json.loads((folder / "table.json").read_text()), "--json is table.json")
+    with open(folder / "flights.csv", newline="", encoding="utf-8") as file:
+        flights = list(csv.DictReader(file))
+    summary = json.loads((folder / "table.json").read_text())
+    check(summary["format"] == "jink-arena/1" and summary["complete"] and len(flights) == summary["flights"] == 8, "8 flights")
+    failed = [flight for flight in flights if flight["outcome"] != "reached"]
+    check(0 < len(failed) < 8, f"{len(failed)} of them failed")
+    names = {path.name for path in (folder / "failed").iterdir()}
+    check(names == {f"{f['family']}-{f['seed']}-{f['tier']}-{f['pilot']}" for f in failed}, "each left its folder, and no other")
+    check(all(f["replay"] in said and f["replay"] in (folder / "table.md").read_text() for f in failed), "commands in table and on the terminal")
+    for total in summary["totals"]:
+        mine = [f for f in flights if f["tier"] == total["tier"] and f["verdict"] != "impossible"]
+        reached = sum(f["outcome"] == "reached" for f in mine)
+        check((total["reached"]["count"], total["reached"]["of"]) == (reached, len(mine)), f"{total['tier']}: {reached} of {len(mine)} reached")
+    page = (folder / "arena.html").read_text()
+    reader = WellFormed()
+    reader.feed(page)
+    check(not reader.open and reader.counts["svg"] == 2 and "script" not in reader.counts, "the page is well formed, with a figure for each tier")
+    for figure in re.findall(r"<svg.*?</svg>", page, re.S):
+        xml.etree.ElementTree.fromstring(figure)
+    return failed
+
+
+def replay(arena, failed):
+    """The one command flies the same flight and leaves a report."""
+    flight = failed[0]
+    command = shlex.split(flight["replay"])
+    check(command[:2] == ["jink", "replay"], flight["replay"])
+    done = subprocess.run([arena.program, *command[1:], "--json", "-"], capture_output=True, text=True, timeout=300, cwd=arena.folder)
+    summary = json.loads(done.stdout)
+    same = all(str(summary[key]) == flight[key] for key in ("outcome", "reason", "plans"))
+    check(done.returncode == 1 and same and summary["flight_time_s"] == float(flight["flight_time_s"]), f"{summary['outcome']} at {summary['flight_time_s']} s again")
+    report = pathlib.Path(arena.folder / command[-1])
+    check(report.stat().st_size > 10000, f"report {report.name}")
+
+
+def rivals(arena):
+    """Who flies the straight line hits something; that flight is replayed as that pilot's, and its log is not taken for jink's."""
+    arena.fly("rivals", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
+    table = json.loads((arena.folder / "rivals" / "table.json").read_text())
+    check([row["pilot"] for row in table["table"]] == ["jink", "straight"], "a row for each pilot")
+    failure = next(f for f in table["failures"] if f["pilot"] == "straight")
+    check(failure["outcome"] == "collision" and " --pilot straight " in failure["replay"], failure["replay"])
+    command = shlex.split(failure["replay"])
+    done = subprocess.run([arena.program, *command[1:]], capture_output=True, text=True, timeout=300, cwd=arena.folder)
+    check(done.returncode == 1 and failure["reason"] in done.stdout, "replayed: the same collision")
+    log = command[command.index("--log") + 1]
+    done = subprocess.run([arena.program, "replay", log], capture_output=True, text=True, timeout=60, cwd=arena.folder)
+    refused(done, [log, "straight"])
+
+
+def same_however(arena):
+    whole = arena.result("whole")
+    arena.fly("threads", *SMALL, "--threads", 3)
+    check(arena.result("threads") == whole, "the same with 3 threads")
+    for part in (1, 2):
+        arena.fly(f"part{part}", *SMALL, "--shard", f"{part}/2")
+    arena.fly("incomplete", "--merge", "part2", status=1)
+    arena.fly("merged", "--merge", "part2", "part1")
+    lines, table = arena.result("merged")
+    check((lines, table) == whole, "two shards merged are the whole")
+    left = {path.name for path in (arena.folder / "whole" / "failed").iterdir()}
+    check({path.name for path in (arena.folder / "merged" / "failed").iterdir()} == left, "with the failed flights")
+    refused(arena.run("--out", "merged", "--merge", "part1"), ["merged", "holds a campaign"])
+    wrong = (arena.folder / "part2" / "flights.jsonl").read_text()
+    (arena.folder / "part2" / "flights.jsonl").write_text(wrong.replace('"seed":1,', '"seed":2,', 1))
+    refused(arena.run("--out", "x", "--merge", "part1", "part2"), ["part2"])
+
+
+def resumed(arena):
+    whole = arena.result("whole")
+    refused(arena.run("--out", "whole", *SMALL), ["--out", "--resume"])
+    refused(arena.run("--out", "whole", "--families", "darts,gates", "--runs", 3, *QUICK, "--resume"), ["runs: 2 in whole, 3 in this call"])
+    refused(arena.run("--out", "whole", *SMALL, "--resume", "--set", "horizon.margin=0.5"), ["horizon.margin: 0.35 in whole, 0.5 in this call"])
+    refused(arena.run("--out", "whole", *SMALL, "--resume", "--seed", 2), ["seed: 1 in whole, 2 in this call"])
+    cut = arena.folder / "cut"
+    cut.mkdir()
+    text = (arena.folder / "whole" / "flights.jsonl").read_text()
+    for length, words in ((2 * len(text) // 3, "cut off"), (100, "holds no campaign")):
+        (cut / "flights.jsonl").write_text(text[:length])
+        said = arena.fly("cut", *SMALL, "--resume")
+        check(words in said and arena.result("cut") == whole, f"goes on behind what was cut off after {length} bytes")
+
+
+def interrupted(arena):
+    """Ctrl-C keeps what is done, writes its tables and says how to go on."""
+    arguments = ["--out", "stopped", "--families", "darts,gates", "--runs", "40", *QUICK]
+    process = subprocess.Popen([arena.program, "arena", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=arena.folder)
+    file = arena.folder / "stopped" / "flights.jsonl"
+    end = time.monotonic() + 120
+    while time.monotonic() < end and not (file.exists() and file.read_bytes().count(b"\n") > 3):
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    summary = json.loads((arena.folder / "stopped" / "table.json").read_text())
+    check(process.returncode == 1 and "--resume" in output and not errors, f"exit status {process.returncode}")
+    check(3 <= summary["flights"] < 160 and not summary["complete"], f"{summary['flights']} flights are kept")
+
+
+def written(arena):
+    for name, tier, dropout in (("perfect.yaml", "perfect", None), ("realistic.yaml", "realistic", 0.05)):
+        arena.run("--write", "gates:7", name, "--tiers", tier)
+        scenario = yaml.safe_load((arena.folder / name).read_text())
+        check(scenario["name"] == "gates-7" and scenario.get("sensing", {}).get("dropout") == dropout, f"{name}: gates-7")
+    done = subprocess.run([arena.program, "plan", "perfect.yaml"], capture_output=True, text=True, timeout=60, cwd=arena.folder)
+    check(done.returncode in (0, 1) and not done.stderr, "jink plan reads it")
+
+
+def test(program):
+    with tempfile.TemporaryDirectory(prefix="jink-arena-") as name:
+        arena = Campaigns(pathlib.Path(program).resolve(), pathlib.Path(name))
+        bad_usage(arena)
+        replay(arena, files(arena))
+        for case in (rivals, same_however, resumed, interrupted, written):
+            print(f"== {case.__name__}", flush=True)
+            case(arena)
+
+
+main(test)

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/arena/campaign_settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "planner/random.hpp"
+
+namespace jink::arena {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "jink-arena-results/1";
+
+/// A bijection of 32 bits (the finalizer of MurmurHash3, public domain): different numbers stay different.
+constexpr std::uint32_t mix(std::uint32_t x) {
+  x ^= x >> 16U;
+  x *= 0x85ebca6bU;
+  x ^= x >> 13U;
+  x *= 0xc2b2ae35U;
+  return x ^ (x >> 16U);
+}
+
+std::string shard_text(const Shard& shard) {
+  return fmt::format("{}/{}", shard.number, shard.of);
+}
+
+/// The settings but for the parameters, as name and text.
+std::vector<config::SettingText> listed(const CampaignSettings& s) {
+  return {{"version", s.version},
+          {"seed", std::to_string(s.seed)},
+          {"families", fmt::format("{}", fmt::join(s.families, ","))},
+          {"pilots", fmt::format("{}", fmt::join(s.pilots, ","))},
+          {"tiers", fmt::format("{}", fmt::join(s.tiers, ","))},
+          {"runs", std::to_string(s.runs)},
+          {"oracle", s.oracle ? "on" : "off"},
+          {"shard", shard_text(s.shard)}};
+}
+
+const std::string* find(const std::vector<config::SettingText>& all, const std::string& key) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.key == key; });
+  return found == all.end() ? nullptr : &found->value;
+}
+
+}  // namespace
+
+std::string flight_name(const std::string& family, std::uint64_t seed, const std::string& tier,
+                        const std::string& pilot) {
+  return fmt::format("{}-{}-{}-{}", family, seed, tier, pilot);
+}
+
+std::uint64_t world_seed(std::uint64_t seed, std::string_view family, int run) {
+  std::uint64_t key = planner::SplitMix64(seed).next();
+  for (const char c : family) key = planner::SplitMix64(key ^ static_cast<unsigned char>(c)).next();
+  return mix(static_cast<std::uint32_t>(run) ^ static_cast<std::uint32_t>(key >> 32U));
+}
+
+std::vector<Job> jobs_of(const CampaignSettings& settings) {
+  std::vector<Job> jobs;
+  const std::size_t flights_of_world = settings.tiers.size() * settings.pilots.size();
+  World world;
+  for (world.run = 0; world.run < settings.runs; ++world.run) {
+    for (std::size_t family = 0; family < settings.families.size(); ++family, ++world.number) {
+      // Diagonally: with as many shards as families, none may be left with one family alone.
+      const auto shards = static_cast<std::size_t>(settings.shard.of);
+      if ((static_cast<std::size_t>(world.run) + family) % shards + 1 !=
+          static_cast<std::size_t>(settings.shard.number))
+        continue;
+      world.family = settings.families[family];
+      world.seed = world_seed(settings.seed, world.family, world.run);
+      std::size_t number = world.number * flights_of_world;
+      for (const std::string& tier : settings.tiers)
+        for (const std::string& pilot : settings.pilots) jobs.push_back({number++, world, tier, pilot});
+    }
+  }
+  return jobs;
+}
+
+Json to_header(const CampaignSettings& s) {
+  Json parameters = Json::object();
+  for (const config::SettingText& one : s.parameters) parameters[one.key] = one.value;
+  return {{"type", "header"},       {"format", kFormat},       {"version", s.version}, {"seed", s.seed},
+          {"families", s.families}, {"pilots", s.pilots},      {"tiers", s.tiers},     {"runs", s.runs},
+          {"oracle", s.oracle},     {"shard", s.shard.number}, {"shards", s.shard.of}, {"parameters", parameters}};
+}
+
+CampaignSettings from_header(const Json& header) {
+  if (!header.is_object() || header.value("format", "") != kFormat)
+    throw std::runtime_error(fmt::format("the first line is not a {} header", kFormat));
+  CampaignSettings s;
+  try {
+    header.at("version").get_to(s.version);
+    header.at("seed").get_to(s.seed);
+    header.at("families").get_to(s.families);
+    header.at("pilots").get_to(s.pilots);
+    header.at("tiers").get_to(s.tiers);
+    header.at("runs").get_to(s.runs);
+    header.at("oracle").get_to(s.oracle);
+    header.at("shard").get_to(s.shard.number);
+    header.at("shards").get_to(s.shard.of);
+    for (const auto& [key, value] : header.at("parameters").items())
+      s.parameters.push_back({key, value.get<std::string>()});
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(std::string("the header: ") + error.what());
+  }
+  if (s.runs < 1 || s.shard.of < 1 || s.shard.number < 1 || s.shard.number > s.shard.of)
+    throw std::runtime_error("the header: runs, shard and shards do not fit one another");
+  return s;
+}
+
+std::vector<std::string> differences(const CampaignSettings& a, const std::string& name_a, const CampaignSettings& b,
+                                     const std::string& name_b) {
+  std::vector<config::SettingText> of_a = listed(a), of_b = listed(b);
+  of_a.insert(of_a.end(), a.parameters.begin(), a.parameters.end());
+  of_b.insert(of_b.end(), b.parameters.begin(), b.parameters.end());
+  std::vector<std::string> result;
+  const auto tell = [&](const std::string& key, const std::string* x, const std::string* y) {
+    result.push_back(
+        fmt::format("{}: {} in {}, {} in {}", key, x ? *x : "missing", name_a, y ? *y : "missing", name_b));
+  };
+  for (const config::SettingText& one : of_a) {
+    const std::string* other = find(of_b, one.key);
+    if (other == nullptr || *other != one.value) tell(one.key, &one.value, other);
+  }
+  for (const config::SettingText& one : of_b)
+    if (find(of_a, one.key) == nullptr) tell(one.key, nullptr, &one.value);
+  return result;
+}
+
+std::string parameters_yaml(const std::vector<config::SettingText>& parameters) {
+  std::string text = "# The planner's parameters in this campaign.\nformat: jink-planner/1\n";
+  std::string section;
+  for (const config::SettingText& one : parameters) {
+    const auto dot = one.key.find('.');
+    if (one.key.substr(0, dot) != section) {
+      section = one.key.substr(0, dot);
+      text += section + ":\n";
+    }
+    text += fmt::format("  {}: {}\n", one.key.substr(dot + 1), one.value);
+  }
+  return text;
+}
+
+}  // namespace jink::arena

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// jink arena: many flights of several pilots through seeded worlds, in virtual time, and what they amount to.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "config/scenario_writer.hpp"
+#include "sim/world_families.hpp"
+#include "tools/arena/campaign.hpp"
+#include "tools/arena/flying.hpp"
+#include "tools/arena/page.hpp"
+#include "tools/arena/pilots.hpp"
+#include "tools/arena/tiers.hpp"
+#include "tools/command_line.hpp"
+
+namespace jink::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostRuns = 1000000;
+constexpr int kMostShards = 100000;
+constexpr std::size_t kMostCommands = 10;         // of failed flights that are printed
+constexpr std::chrono::seconds kPlainPeriod{15};  // between lines where there is no terminal
+
+constexpr const char* kFooter =
+    "Writes into --out: flights.jsonl (a line for each flight as it ends), flights.csv, table.csv, table.json, "
+    "table.md,\n"
+    "arena.html, planner.yaml, and failed/NAME with scenario and log of each flight that did not reach.\n"
+    "Exit codes: 0 the campaign ran to its end, whatever its flights came to; 1 it is not complete (Ctrl-C, flights\n"
+    "missing after --merge): --resume goes on; 2 bad usage, file or value.";
+
+struct ArenaOptions {
+  CommonOptions common;
+  std::string families = "all", pilots = "jink", tiers = "all";
+  int runs = 20;
+  std::string out = "arena";
+  bool resume = false;
+  std::string shard = "1/1";
+  std::vector<std::string> merge;
+  std::vector<std::string> write;
+  std::string oracle = "on", logs = "on";
+};
+
+/// "a,b" or "all": in the order of `known`.
+std::vector<std::string> chosen(const char* option, const std::string& text, std::span<const std::string_view> known) {
+  std::vector<std::string> wanted;
+  std::istringstream list(text);
+  for (std::string name; std::getline(list, name, ',');) wanted.push_back(name);
+  if (wanted.empty()) wanted.emplace_back();
+  std::vector<std::string> result;
+  for (const std::string_view name : known) {
+    const auto times = std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) { return one == name; });
+    if (times > 1) throw UsageError(fmt::format("{}: '{}' is there twice", option, name));
+    if (times == 1 || text == "all") result.emplace_back(name);
+  }
+  for (const std::string& name : wanted) {
+    if (text != "all" && std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError(fmt::format("{}: '{}' is not one of {}, or all", option, name, fmt::join(known, ", ")));
+  }
+  return result;
+}
+
+template <class Number>
+std::optional<Number> whole(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+arena::Shard shard_of(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const int number = whole<int>(std::string_view(text).substr(0, slash)).value_or(0);
+  int of = 0;
+  if (slash != std::string::npos) of = whole<int>(std::string_view(text).substr(slash + 1)).value_or(0);
+  if (of < 1 || of > kMostShards || number < 1 || number > of)
+    throw UsageError(fmt::format("--shard: '{}' is not K/N with 1 <= K <= N <= {}", text, kMostShards));
+  return {number, of};
+}
+
+arena::CampaignSettings settings_of(const ArenaOptions& options, const config::Settings& planner) {
+  arena::CampaignSettings s;
+  s.version = JINK_VERSION;
+  s.seed = options.common.seed;
+  s.families = chosen("--families", options.families, sim::world_families());
+  s.pilots = chosen("--pilots", options.pilots, arena::pilots());
+  s.tiers = chosen("--tiers", options.tiers, arena::tiers());
+  s.runs = options.runs;
+  s.oracle = options.oracle == "on";
+  s.shard = shard_of(options.shard);
+  s.parameters = config::list_settings(planner);
+  return s;
+}
+
+std::string duration(double seconds) {
+  const auto whole_seconds = static_cast<long>(std::max(0.0, seconds) + 0.5);
+  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
+  if (whole_seconds < 3600) return fmt::format("{} min {:02} s", whole_seconds / 60, whole_seconds % 60);
+  return fmt::format("{} h {:02} min", whole_seconds / 3600, whole_seconds / 60 % 60);
+}
+
+/// The live line, or now and then a plain one.
+class ProgressPrinter {
+ public:
+  explicit ProgressPrinter(const Printer& printer) : printer_(printer) {}
+
+  void operator()(const arena::Progress& p) {
+    const auto now = Clock::now();
+    if (printer_.terminal()) {
+      printer_.live(text(p, now));
+    } else if (now - last_ >= kPlainPeriod && p.done < p.total) {
+      printer_.line(text(p, now));
+      last_ = now;
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t kBar = 24;
+
+  [[nodiscard]] std::string text(const arena::Progress& p, Clock::time_point now) const {
+    const double elapsed = std::chrono::duration<double>(now - begun_).count();
+    const double share = p.total == 0 ? 1.0 : static_cast<double>(p.done) / static_cast<double>(p.total);
+    const auto full = static_cast<std::size_t>(share * kBar);
+    const std::string left = p.flown == 0
+                                 ? ""
+                                 : fmt::format(", {} left", duration(elapsed * static_cast<double>(p.total - p.done) /
+                                                                     static_cast<double>(p.flown)));
+    return fmt::format("[{:{}}] {:3.0f} %  {} of {} flights, {} not reached ({} hit), {}{}", std::string(full, '#'),
+                       kBar, 100.0 * share, p.done, p.total, p.failed, p.hit, duration(elapsed), left);
+  }
+
+  const Printer& printer_;
+  Clock::time_point begun_ = Clock::now(), last_ = begun_;
+};
+
+void tell_failures(const arena::Summary& summary, const fs::path& out, const Printer& printer) {
+  if (summary.failures.empty()) return;
+  printer.line(fmt::format("\n{} flights did not reach. To fly one again and see it:", summary.failures.size()));
+  for (std::size_t i = 0; i < std::min(kMostCommands, summary.failures.size()); ++i) {
+    const arena::FlightRecord& r = summary.failures[i];
+    printer.line(fmt::format("  {} ({})\n    {}", r.outcome, r.reason, arena::replay_command(out, r)));
+  }
+  if (summary.failures.size() > kMostCommands)
+    printer.line(
+        fmt::format("  and {} more, in {}", summary.failures.size() - kMostCommands, (out / "flights.csv").string()));
+}
+
+/// Tables into the folder, to the terminal and to --json.
+void conclude(const arena::Results& results, const ArenaOptions& options, const Printer& printer) {
+  const fs::path out = options.out;
+  const arena::Summary summary = arena::summarise(results);
+  arena::write_tables(results, summary, out);
+  printer.line(arena::table_text(results, summary));
+  tell_failures(summary, out, printer);
+  printer.line("\npage: " + fs::absolute(out / "arena.html").string());
+  write_json(options.common.json, arena::summary_json(results, summary, out));
+}
+
+void make_folder(const fs::path& out) {
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error || !fs::is_directory(out))
+    throw UsageError(fmt::format("--out: '{}' cannot be made a folder", out.string()));
+}
+
+/// What an earlier run left, or nothing yet. Throws UsageError where it is in the way.
+arena::Results begin(const arena::CampaignSettings& settings, const ArenaOptions& options, const Printer& printer) {
+  const fs::path file = arena::results_path(options.out);
+  arena::Results results;
+  results.settings = settings;
+  if (!arena::has_begun(file)) {
+    if (options.resume) printer.line(fmt::format("{} holds no campaign: this is the beginning of one", options.out));
+    return results;
+  }
+  if (!options.resume)
+    throw UsageError(fmt::format(
+        "--out: '{}' holds a campaign; --resume goes on with it, another folder begins a new one", options.out));
+  arena::Results earlier = arena::read_results(file);
+  const auto differ = arena::differences(earlier.settings, options.out, settings, "this call");
+  if (!differ.empty())
+    throw UsageError(
+        fmt::format("--resume: '{}' was begun with other settings: {}", options.out, fmt::join(differ, "; ")));
+  printer.line(fmt::format("going on with {} flights of an earlier run{}", earlier.flights.size(),
+                           earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
+  return earlier;
+}
+
+int run_campaign(const ArenaOptions& options, const Printer& printer) {
+  const config::Settings planner = options.common.settings();
+  const arena::CampaignSettings settings = settings_of(options, planner);
+  arena::Results results = begin(settings, options, printer);
+  make_folder(options.out);
+  arena::ResultsFile file(arena::results_path(options.out), results);
+  arena::write_whole(fs::path(options.out) / "planner.yaml", arena::parameters_yaml(settings.parameters));
+  printer.line(fmt::format("seed {}: {} flights on {} threads, results in {}", settings.seed,
+                           arena::jobs_of(settings).size(), options.common.thread_count(), options.out));
+  catch_signals();
+  ProgressPrinter progress(printer);
+  arena::CampaignOptions campaign;
+  campaign.out = options.out;
+  campaign.settings = planner;
+  campaign.threads = options.common.thread_count();
+  campaign.logs = options.logs == "on";
+  campaign.interrupted = interrupted;
+  campaign.on_progress = [&](const arena::Progress& p) { progress(p); };
+  const bool complete = arena::fly_campaign(results, file, campaign);
+  printer.line("");
+  conclude(results, options, printer);
+  if (complete) return kExitReached;
+  printer.line(fmt::format("interrupted: the same command with --resume flies the other {} flights",
+                           arena::jobs_of(settings).size() - results.flights.size()));
+  return kExitFailed;
+}
+
+/// The scenarios and logs of failed flights, which are named by what they are.
+void copy_failures(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (!fs::is_directory(from / "failed", error)) return;
+  fs::copy(from / "failed", to / "failed", fs::copy_options::recursive | fs::copy_options::overwrite_existing, error);
+  if (error) throw UsageError(fmt::format("--merge: '{}': {}", (from / "failed").string(), error.message()));
+}
+
+int run_merge(const ArenaOptions& options, const Printer& printer) {
+  std::error_code error;
+  if (fs::exists(arena::results_path(options.out), error))
+    throw UsageError(fmt::format("--out: '{}' holds a campaign; merge into another folder", options.out));
+  const std::vector<fs::path> folders(options.merge.begin(), options.merge.end());
+  const arena::Results results = arena::merge_results(folders);
+  make_folder(options.out);
+  for (const fs::path& folder : folders) copy_failures(folder, options.out);
+  arena::write_whole(fs::path(options.out) / "planner.yaml", arena::parameters_yaml(results.settings.parameters));
+  conclude(results, options, printer);
+  const std::size_t all = arena::jobs_of(results.settings).size();
+  if (results.flights.size() == all) return kExitReached;
+  printer.line(fmt::format("{} of {} flights are missing: the same settings with --out {} --resume fly them",
+                           all - results.flights.size(), all, options.out));
+  return kExitFailed;
+}
+
+/// FAMILY:SEED FILE.
+int run_write(const ArenaOptions& options, const Printer& printer) {
+  const std::string& world = options.write.front();
+  const std::size_t colon = world.find(':');
+  const auto seed =
+      colon == std::string::npos ? std::nullopt : whole<std::uint64_t>(std::string_view(world).substr(colon + 1));
+  if (!seed) throw UsageError(fmt::format("--write: '{}' is not FAMILY:SEED with a seed from 0 to 2^64 - 1", world));
+  const auto families = chosen("--write", world.substr(0, colon), sim::world_families());
+  const auto tiers = chosen("--tiers", options.tiers, arena::tiers());
+  if (families.size() != 1) throw UsageError("--write: takes one family");
+  // Of both tiers the true world is the same; what is not asked for is not put in its sensing.
+  const config::Scenario scenario =
+      arena::scenario_of({0, families.front(), 0, *seed}, tiers.size() == 1 ? tiers.front() : "perfect");
+  arena::write_whole(options.write.back(), config::to_yaml(scenario));
+  printer.line(fmt::format("{}: {}", options.write.back(), scenario.name));
+  return kExitReached;
+}
+
+/// An option without effect is refused: a merged campaign has the settings of its parts, a written world needs none.
+void refuse_useless(const CLI::App& app) {
+  std::vector<std::string> useless{"--families", "--pilots", "--runs",    "--resume", "--shard", "--oracle",
+                                   "--logs",     "--seed",   "--threads", "--config", "--set"};
+  const char* const mode = app.count("--merge") > 0 ? "--merge" : "--write";
+  if (app.count(mode) == 0) return;
+  const bool merges = mode == std::string_view("--merge");
+  for (const char* name : merges ? std::array{"--tiers", "--write"} : std::array{"--out", "--json"})
+    useless.emplace_back(name);
+  for (const std::string& name : useless)
+    if (app.count(name) > 0) throw UsageError(fmt::format("{}: has no effect beside {}", name, mode));
+}
+
+int run(const ArenaOptions& options) {
+  const Printer printer(options.common.json == "-");
+  try {
+    if (!options.write.empty()) return run_write(options, printer);
+    if (!options.merge.empty()) return run_merge(options, printer);
+    return run_campaign(options, printer);
+  } catch (const arena::ResultsError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace
+
+Subcommand add_arena(CLI::App& jink) {
+  CLI::App* app = jink.add_subcommand(
+      "arena", "fly many seeded worlds closed loop in virtual time, with jink and its rivals, and make tables of it");
+  const auto options = std::make_shared<ArenaOptions>();
+  const auto names = [](std::span<const std::string_view> all) { return fmt::format("{}", fmt::join(all, ", ")); };
+  app->add_option("--families", options->families, "families of worlds, A,B or all: " + names(sim::world_families()))
+      ->capture_default_str();
+  app->add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(arena::pilots()))
+      ->capture_default_str();
+  app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
+      ->capture_default_str();
+  app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
+      ->check(CLI::Range(1, kMostRuns))
+      ->capture_default_str();
+  app->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
+  app->add_option("--shard", options->shard,
+                  "K/N: fly the K-th of N parts, for several machines; --merge puts them together")
+      ->capture_default_str();
+  app->add_option("--oracle", options->oracle,
+                  "on: ask an independent search, which knows the future, whether worlds in which nobody\n"
+                  "arrived have a way through; those that have none count apart")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  app->add_option("--logs", options->logs, "off: failed flights leave their scenario but no log")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  app->add_option("--merge", options->merge, "put the results in these folders together into --out")
+      ->expected(1, kMostShards);
+  app->add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
+      ->expected(2);
+  options->common.add_to(*app);
+  app->get_option("--threads")->description("flights at once, 1 to 256 (default: one for each core)");
+  app->footer(kFooter);
+  return {app, [options, app] {
+            refuse_useless(*app);
+            return run(*options);
+          }};
+}
+
+}  // namespace jink::tools
