@@ -281,7 +281,7 @@ void Supervisor::find_hazard(double now, const VehicleState& state, const Flight
   hazard_.clear();
   if (now - state.position_stamp > settings_.stale_state) {
     hazard_ = "the vehicle's position is stale";
-  } else if (now - state.heartbeat_stamp > kHeartbeatTimeout) {
+  } else if (now - state.heartbeat_stamp > kHeartbeatLost) {
     hazard_ = "the autopilot's heartbeat is missing";
   } else if (failsafe_since_ >= 0.0) {
     hazard_ = "the autopilot's failsafe flies, mode " + std::string(to_string(state.mode));

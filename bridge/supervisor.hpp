@@ -86,6 +86,8 @@ class Supervisor {
 
  private:
   static constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
+  // s, in flight: a link that loses every fifth packet loses three heartbeats in a row twice in five minutes.
+  static constexpr double kHeartbeatLost = 5.0;
 
   void enter(Phase phase, double now);
   void finish(Outcome outcome, std::string reason);

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/clock.hpp"
 #include "bridge/dds_tracks.hpp"
 #include "config/scenario.hpp"
 #include "sim/simulator.hpp"
@@ -127,10 +128,11 @@ void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, Bac
                        const bridge::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
   LiveLine live(printer, kPlainPeriod);
+  const bridge::SteadyClock pace;  // simulated time may run a thousand times as fast
   for (int step = 0; !interrupted(); ++step) {
     simulator.step();
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;
-    if (live.due(simulator.now())) live.show(status(simulator, writer));
+    if (live.due(pace.now())) live.show(status(simulator, writer));
     if (options.lockstep) {
       if (step % kTurnSteps == kTurnSteps - 1) wait_for_companions(simulator);
       continue;

@@ -30,7 +30,7 @@ int run(int argc, char** argv) {
   jink.footer(kFooter);
   jink.set_version_flag("--version", std::string("jink ") + JINK_VERSION);
   jink.require_subcommand(1);
-  const std::vector<Subcommand> commands{add_plan(jink),   add_replay(jink), add_sim(jink),   add_fly(jink),
+  const std::vector<Subcommand> commands{add_plan(jink),   add_replay(jink), add_sim(jink),    add_fly(jink),
                                          add_doctor(jink), add_report(jink), add_export(jink), add_arena(jink)};
   const auto names = [&] {
     std::string list;

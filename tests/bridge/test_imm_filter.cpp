@@ -15,9 +15,9 @@ using planner::RandomStream;
 using planner::Track;
 using planner::Vec3;
 
-constexpr double kStep = 0.05;           // s
-constexpr double kPositionSigma = 0.1;   // m
-constexpr double kVelocitySigma = 0.3;   // m/s
+constexpr double kStep = 0.05;          // s
+constexpr double kPositionSigma = 0.1;  // m
+constexpr double kVelocitySigma = 0.3;  // m/s
 
 Vec3 noise(RandomStream& random, double sigma) {
   const double x = random.normal();
@@ -89,9 +89,9 @@ TEST(ImmFilter, KnowsSteadyMotionMuchBetterThanItIsMeasured) {
 
 TEST(ImmFilter, FollowsAMotionThatSwings) {
   constexpr double kFrequency = 1.2;
-  const Errors errors = follow([](double t) { return Vec3(2.0 * std::sin(kFrequency * t), 0.0, 1.0); },
-                               [](double t) { return Vec3(2.0 * kFrequency * std::cos(kFrequency * t), 0.0, 0.0); },
-                               2.0, 8.0);
+  const Errors errors =
+      follow([](double t) { return Vec3(2.0 * std::sin(kFrequency * t), 0.0, 1.0); },
+             [](double t) { return Vec3(2.0 * kFrequency * std::cos(kFrequency * t), 0.0, 0.0); }, 2.0, 8.0);
   EXPECT_LT(errors.position, 0.8);
   EXPECT_LT(errors.velocity, 0.6);
   EXPECT_LT(errors.stated_position, 1.5);

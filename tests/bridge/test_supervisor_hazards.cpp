@@ -69,7 +69,7 @@ const std::vector<Hazard>& hazards() {
   static const std::vector<Hazard> all{
       {"state", [](Flight& f) { f.positions = false; }, [](Flight& f) { f.positions = true; }, 0.2, "position is stale",
        true},
-      {"heartbeat", [](Flight& f) { f.heartbeats = false; }, [](Flight& f) { f.heartbeats = true; }, 3.0,
+      {"heartbeat", [](Flight& f) { f.heartbeats = false; }, [](Flight& f) { f.heartbeats = true; }, 5.0,
        "heartbeat is missing", true},
       {"tracks", [](Flight& f) { f.tracks = false; }, [](Flight& f) { f.tracks = true; }, 1.0, "tracks are stale",
        true},

@@ -61,7 +61,7 @@ def check_rewritten(terminal, name):
 
 def replay_tells(arena):
     """On a terminal how far it is; in a file the result alone while it is short."""
-    command = [arena.jink, "replay", CONFIG / "scenarios" / "table2-1.yaml", "--set", "horizon.generations=2000"]
+    command = [arena.jink, "replay", CONFIG / "scenarios" / "crossing.yaml", "--set", "horizon.generations=3000"]
     terminal = Terminal(arena, command)
     terminal.read(300)
     lines = check_rewritten(terminal, "replay")
