@@ -109,9 +109,14 @@ std::string status(const sim::Simulator& simulator, const bridge::DdsTrackWriter
   return live_text(live);
 }
 
-/// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second.
-void wait_for_companions(sim::Simulator& simulator) {
+/// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second. A turn in which none is waited
+/// for takes as long as in real time, since whoever connects then can follow no faster clock; `turn` is its beginning,
+/// and becomes the next one's.
+void wait_for_companions(sim::Simulator& simulator, double speed, bool awaited,
+                         std::chrono::steady_clock::time_point& turn) {
   const auto begun = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> whole(kTurnSteps * sim::VehicleModel::kStep / speed);
+  if (!awaited) std::this_thread::sleep_until(turn + std::chrono::duration_cast<std::chrono::nanoseconds>(whole));
   while (!simulator.answered() && !interrupted()) {
     if (std::chrono::steady_clock::now() - begun > kLongestWait) {
       simulator.give_up();
@@ -121,12 +126,15 @@ void wait_for_companions(sim::Simulator& simulator) {
     simulator.poll();
   }
   simulator.begin_turn();
+  turn = std::chrono::steady_clock::now();
 }
 
 /// Steps in real time (or `speed` times it; a late step is caught up) or in lockstep, until the end.
 void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, BackgroundPrinter& printer,
                        const bridge::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
+  auto turn = begun;
+  bool awaited = false;  // in lockstep: a companion is, in this turn
   LiveLine live(printer, kPlainPeriod);
   const bridge::SteadyClock pace;  // simulated time may run a thousand times as fast
   for (int step = 0; !interrupted(); ++step) {
@@ -134,7 +142,9 @@ void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, Bac
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;
     if (live.due(pace.now())) live.show(status(simulator, writer));
     if (options.lockstep) {
-      if (step % kTurnSteps == kTurnSteps - 1) wait_for_companions(simulator);
+      const bool last = step % kTurnSteps == kTurnSteps - 1;
+      if (last) wait_for_companions(simulator, options.speed, awaited, turn);
+      if (last) awaited = !simulator.answered();
       continue;
     }
     std::this_thread::sleep_until(
