@@ -16,7 +16,8 @@ constexpr double kArrival = 0.3;           // m, to the last waypoint
 constexpr double kArrivalSpeed = 0.5;      // m/s
 constexpr double kPassing = 0.7;           // m, to a waypoint on the way
 constexpr double kTakeoffTolerance = 0.3;  // m
-constexpr double kInset = 0.1;             // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInset = 0.05;           // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInsetMargin = 0.3;      // of the margin, likewise
 constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
@@ -176,8 +177,8 @@ void Companion::planner_failed(double now, const std::exception& failure) {
 
 planner::Box Companion::volume(const Vec3& start, const Vec3& target) const {
   planner::Box box = flight_volume(mission_);
-  // The vehicle is off its path by the margin, at times.
-  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(margin());
+  // The vehicle is off its path at times. Not by all of the margin: in a narrow corridor the room is needed to dodge.
+  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(kInsetMargin * margin());
   box.min += inset;
   box.max -= inset;
   // Where the vehicle is already, a path may begin, and it may end where it is sent.
