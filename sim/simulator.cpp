@@ -10,6 +10,7 @@
 namespace jink::sim {
 namespace {
 
+constexpr double kPatience = 15.0;       // s, that a flight takes to its start without a word
 constexpr std::int64_t kTruthSteps = 5;  // of 4 ms, between truth records: 50 Hz
 
 }  // namespace
@@ -126,9 +127,17 @@ void Simulator::start_clock() {
 
 void Simulator::watch_clock() {
   if (clock_start_) return;
-  for (Vehicle& vehicle : vehicles_) {
-    const bool near = (vehicle.autopilot.true_motion().position - vehicle.spec.start).norm() <= kAtStart;
-    if (near && vehicle.autopilot.mode() == FlightMode::kOffboard) vehicle.was_at_start = true;
+  for (std::size_t k = 0; k < vehicles_.size(); ++k) {
+    Vehicle& vehicle = vehicles_[k];
+    const bool offboard = vehicle.autopilot.mode() == FlightMode::kOffboard;
+    const double away = (vehicle.autopilot.true_motion().position - vehicle.spec.start).norm();
+    if (offboard && away <= kAtStart) vehicle.was_at_start = true;
+    if (!offboard || !vehicle.autopilot.armed() || vehicle.was_at_start || vehicle.away_said) continue;
+    if (!vehicle.away_from) vehicle.away_from = now_;
+    if (now_ - *vehicle.away_from < kPatience) continue;
+    vehicle.away_said = true;
+    say("clock", named(static_cast<int>(k),
+                       "flies, but has not been within 0.5 m of its start: until then all obstacles stand"));
   }
   if (std::all_of(vehicles_.begin(), vehicles_.end(), [](const Vehicle& v) { return v.was_at_start; })) start_clock();
 }

@@ -90,6 +90,8 @@ class Simulator {
     Autopilot autopilot;
     std::unique_ptr<MavlinkEndpoint> endpoint;
     bool was_at_start = false;
+    std::optional<double> away_from;  ///< when it was first in OFFBOARD in the air, before it was at its start
+    bool away_said = false;
     std::uint64_t setpoints_before = 0;  ///< those that had come when the turn began
     bool given_up = false;
 

@@ -15,6 +15,7 @@ using planner::PlanStatus;
 using planner::TimedPath;
 using planner::Vec3;
 
+constexpr double kFastestSwing = 10.0;     // rad/s
 constexpr int kMostGenerations = 1000000;  // horizon.generations' own bound
 constexpr std::array<std::string_view, 8> kTypes = {"truth",    "obstacles", "state", "tracks",
                                                     "setpoint", "event",     "plan",  "header"};
@@ -125,6 +126,7 @@ bridge::Forecast forecast_of(const Json& item, std::size_t tracks) {
     const auto x = exact_numbers<1 + 3 * kTerms>(member(item, "swings"), "swings");
     bridge::HarmonicMotion motion;
     motion.frequency = x[0];
+    if (!(std::abs(motion.frequency) <= kFastestSwing)) refuse("\"swings\" faster than anything that was ever fitted");
     for (std::size_t i = 0; i < 3 * kTerms; ++i)
       motion.terms(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = x[i + 1];
     forecast.motion = motion;

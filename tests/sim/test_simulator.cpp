@@ -122,6 +122,18 @@ TEST(Simulator, TheClockWaitsForEveryVehicle) {
   EXPECT_GT(stage.publications.back().message.tracks.at(0).position.y(), -7.5);
 }
 
+TEST(Simulator, SaysThatAFlightNeverCameToItsStart) {
+  config::Scenario scenario = two_vehicles();
+  scenario.vehicles.clear();
+  scenario.obstacles = {ball(0.5, {3, -8, 1.5})};
+  Stage stage(scenario);
+  const Vec3 elsewhere = scenario.start + Vec3(2, 0, 0);
+  EXPECT_FALSE(stage.run(10.0, {elsewhere}, [&] { return stage.simulator->clock_runs(); }));
+  EXPECT_FALSE(stage.said("clock: "));
+  EXPECT_FALSE(stage.run(20.0, {elsewhere}, [&] { return stage.simulator->clock_runs(); }));
+  EXPECT_TRUE(stage.said("clock: flies, but has not been within 0.5 m of its start"));
+}
+
 TEST(Simulator, VehiclesThatCollideFallAndBothHaveFailed) {
   const config::Scenario scenario = two_vehicles();
   Stage stage(scenario);
