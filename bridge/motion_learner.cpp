@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/obstacle_motion.hpp"
+#include "planner/settings.hpp"
 
 namespace jink::bridge {
 namespace {
@@ -19,14 +20,15 @@ constexpr double kPlainMisfit = 0.1;     // m in kLead seconds, with which plain
 constexpr double kProven = 0.25;         // m in kLead seconds, with which a fit has proved right
 constexpr double kBetter = 0.6;          // times plain prediction's misfit, that its own may be
 constexpr double kSigmas = 3.0;          // of the estimate that a misfit may be by noise
-constexpr double kTrust = 0.7;           // s, of plain prediction's acceleration
 constexpr double kExact = 0.01;          // m, m/s: sigmas below are taken for this
 constexpr double kBeyond = 0.1;          // m, that noise may put a track behind a bound
 constexpr double kTurnSpeed = 0.3;       // m/s, below which a turn is no bounce
 constexpr std::size_t kNoisyWindow = 5;  // samples on either side of a turn
 constexpr double kDoubt = 0.1;           // m/s, that a forecast is worse by than its measure
-constexpr double kAhead = 6.0;           // s, in which a turn is of interest
-constexpr double kTurnPause = 0.3;       // s, between two turns of a track
+constexpr planner::HorizonSettings kDefaults;
+constexpr double kTrust = kDefaults.acceleration_trust;  // s, of plain prediction's acceleration
+constexpr double kAhead = kDefaults.time;                // s, in which a turn is of interest
+constexpr double kTurnPause = 0.3;                       // s, between two turns of a track
 
 double along(double x, bool upper) {
   return upper ? x : -x;

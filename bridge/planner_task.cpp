@@ -7,18 +7,6 @@
 
 namespace jink::bridge {
 
-Obstacles set_obstacles(PlanJob& job, const planner::HorizonSettings& settings) {
-  Obstacles obstacles = obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
-  job.request.tracks = obstacles.tracks;
-  job.request.paths = obstacles.paths;
-  return obstacles;
-}
-
-void forget_obstacles(PlanJob& job) {
-  job.request.tracks = {};
-  job.request.paths = {};
-}
-
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const Clock& clock, Wake* done)
     : settings_(settings),
       clock_(clock),

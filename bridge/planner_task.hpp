@@ -39,8 +39,16 @@ struct PlanResult {
 };
 
 /// What the job's plan is to avoid up to that planner's horizon. The request refers to it, until forget_obstacles().
-[[nodiscard]] Obstacles set_obstacles(PlanJob& job, const planner::HorizonSettings& settings);
-void forget_obstacles(PlanJob& job);
+[[nodiscard]] inline Obstacles set_obstacles(PlanJob& job, const planner::HorizonSettings& settings) {
+  Obstacles obstacles = obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+  job.request.tracks = obstacles.tracks;
+  job.request.paths = obstacles.paths;
+  return obstacles;
+}
+inline void forget_obstacles(PlanJob& job) {
+  job.request.tracks = {};
+  job.request.paths = {};
+}
 
 /// One job at a time.
 class PlannerTask {

@@ -142,9 +142,10 @@ void run_until_the_end(sim::Simulator& simulator, const SimOptions& options, Bac
     if (options.duration > 0.0 && simulator.now() >= options.duration) break;
     if (live.due(pace.now())) live.show(status(simulator, writer));
     if (options.lockstep) {
-      const bool last = step % kTurnSteps == kTurnSteps - 1;
-      if (last) wait_for_companions(simulator, options.speed, awaited, turn);
-      if (last) awaited = !simulator.answered();
+      if (step % kTurnSteps == kTurnSteps - 1) {
+        wait_for_companions(simulator, options.speed, awaited, turn);
+        awaited = !simulator.answered();
+      }
       continue;
     }
     std::this_thread::sleep_until(

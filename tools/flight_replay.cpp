@@ -250,11 +250,7 @@ FlightComparison compare_plans(FlightRecording& recording, const ReplaySettings&
   FlightComparison result;
   while (std::optional<RecordedPlan> recorded = recording.next()) {
     bridge::PlanJob& job = recorded->job;
-    const planner::HorizonSettings& horizon = settings.settings.horizon;
-    const bridge::Obstacles obstacles =
-        bridge::obstacles_of(job.tracks, job.forecasts, job.paths, horizon.time, horizon.step);
-    job.request.tracks = obstacles.tracks;
-    job.request.paths = obstacles.paths;
+    const bridge::Obstacles obstacles = bridge::set_obstacles(job, settings.settings.horizon);
     change(job.request, settings);
     // Searches go as far as the recorded ones did, unless their length is what was changed.
     const bool by_count = settings.settings.horizon.generations == settings.recorded.horizon.generations &&
