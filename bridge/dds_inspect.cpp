@@ -179,7 +179,8 @@ class Inspector {
       return {
           Check::Level::kOk, name, count(participants_.size(), "other participant") + ": " + joined(participants_), {}};
     }
-    return {needed ? Check::Level::kMissing : Check::Level::kWarning, name, "no other participant", nobody_remedy()};
+    const Check::Level level = needed ? Check::Level::kMissing : Check::Level::kWarning;
+    return {level, name, "no other participant", nobody_remedy()};
   }
 
   /// `absent`: the level where there is nobody.
@@ -208,6 +209,7 @@ class Inspector {
 
  private:
   std::string nobody_remedy() const {
+    if (std::string trouble = discovery_trouble(domain_); !trouble.empty()) return trouble;
     return "start the other side in this domain (ROS_DOMAIN_ID=" + std::to_string(domain_) +
            ", or dds.domain in the mission); multicast must pass (firewall, Wi-Fi, container networks), and "
            "ROS_LOCALHOST_ONLY must not be set on another machine";

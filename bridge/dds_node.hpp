@@ -10,6 +10,10 @@ namespace jink::bridge {
 
 inline constexpr int kMaxDdsDomain = 232;  ///< the port formula of DDS ends there
 
+/// Why participants of this domain cannot find each other by multicast on this machine, one line: another program holds
+/// the UDP port on which they would (RTPS 2.2, 9.6.1.1). Fast DDS says nothing then. Empty where it is free or shared.
+[[nodiscard]] std::string discovery_trouble(int domain);
+
 /// Over UDP and shared memory with plain multicast discovery; a profile in FASTRTPS_DEFAULT_PROFILES_FILE may say
 /// otherwise. Safe from any thread. It must outlive what is made on it.
 class DdsNode {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/dds_support.hpp"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -72,6 +77,27 @@ void PayloadType::deleteData(void* data) {
 
 bool PayloadType::getKey(void* /*data*/, eprosima::fastrtps::rtps::InstanceHandle_t* /*handle*/, bool /*force_md5*/) {
   return false;  // no keys in ROS 2's types
+}
+
+std::string discovery_trouble(int domain) {
+  constexpr int kPortBase = 7400;
+  constexpr int kPortsPerDomain = 250;
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(static_cast<std::uint16_t>(kPortBase + kPortsPerDomain * domain));
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return {};
+  // Participants share the port, so it can be had beside them.
+  const int yes = 1;
+  (void)::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  const bool taken = ::bind(socket, reinterpret_cast<const sockaddr*>(&where), sizeof where) != 0 &&  // NOLINT
+                     errno == EADDRINUSE;
+  ::close(socket);
+  if (!taken) return {};
+  return "another program holds UDP port " + std::to_string(ntohs(where.sin_port)) +
+         ", on which the participants of DDS " + "domain " + std::to_string(domain) +
+         " find each other; end it (ss -ulpn), or take a domain from 0 to 101, whose " +
+         "ports Linux gives to nobody who does not ask for them";
 }
 
 DdsNode::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery) : domain_(domain) {

@@ -170,6 +170,8 @@ int run(const FlyOptions& options) {
   background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
                                mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
                                mission.connection, mission.dds_domain, options.common.seed));
+  if (const std::string trouble = bridge::discovery_trouble(mission.dds_domain); !trouble.empty())
+    background->line("warning: " + trouble);
   run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, wake, observers);
 
   background.reset();

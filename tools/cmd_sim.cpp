@@ -207,6 +207,9 @@ void introduce(const config::Scenario& scenario, const SimOptions& options, Back
         fmt::format("autopilot: MAVLink from UDP {} to 127.0.0.1:{} (companion) and :14550 (ground station), system {}",
                     14580 + i, 14540 + i, i + 1));
   }
+  const bool on_dds = !options.no_tracks || options.dds_vehicle;
+  if (const std::string trouble = bridge::discovery_trouble(options.domain); on_dds && !trouble.empty())
+    printer.line("warning: " + trouble);
   printer.line("Ctrl-C ends it");
 }
 

@@ -9,4 +9,10 @@ tools/build.sh "$preset"
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
 if [ "$preset" = asan ]; then export LSAN_OPTIONS="suppressions=$PWD/tests/support/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"; fi
 # One more than cores: the system tests mostly wait.
-ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@"
+log=build/$preset/Testing/Temporary/LastTest.log
+ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@" || {
+  status=$?
+  echo "== what failed, from $log:"
+  grep -hE -A4 '^FAIL|^AssertionError|: Failure$|ERROR: .*Sanitizer|WARNING: ThreadSanitizer' "$log" | tail -n 80
+  exit "$status"
+}

@@ -2,19 +2,29 @@
 // What the tests over real DDS transports share: a domain for each, and a clock that they set.
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <stdexcept>
 #include <string>
 
 #include "bridge/clock.hpp"
 
 namespace jink::bridge::testing {
 
-/// Tests run side by side, each in a process: a domain each. 1 to 100 are clear of the ephemeral ports.
+/// Tests run side by side, each in a process: a domain for each call, nobody else's until the process ends.
 inline int own_domain() {
-  static int tests = 0;
-  return 1 + (static_cast<int>(getpid()) + 7 * tests++) % 100;
+  constexpr int kDomains = 38;  // 1 to 38; the system tests have those from 40 on
+  for (int k = 0; k < kDomains; ++k) {
+    const int domain = 1 + (static_cast<int>(getpid()) + k) % kDomains;
+    const std::string lock = "/tmp/jink-test-domain-" + std::to_string(domain);
+    const int file = open(lock.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);  // held until the process ends
+    if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return domain;
+    if (file >= 0) close(file);
+  }
+  throw std::runtime_error("every DDS domain for tests is in use");
 }
 
 /// Reads what the test sets; safe from any thread.

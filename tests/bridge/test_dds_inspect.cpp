@@ -3,6 +3,9 @@
 #include "bridge/dds_inspect.hpp"
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -90,6 +93,24 @@ TEST(DdsInspect, MissesWhoIsNeeded) {
   mission.state = mission.setpoints = Transport::kMavlink;
   mission.tracks.required = false;
   for (const Check& check : inspect_dds(mission, 0.3)) EXPECT_EQ(check.level, Check::Level::kWarning) << check.name;
+}
+
+TEST(DdsInspect, NamesTheProgramThatHoldsTheDiscoveryPort) {
+  const Mission mission = tracks_mission(own_domain());
+  EXPECT_EQ(jink::bridge::discovery_trouble(mission.dds_domain), "");
+  const int thief = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * mission.dds_domain));
+  ASSERT_EQ(bind(thief, reinterpret_cast<const sockaddr*>(&where), sizeof where), 0);
+  const DdsTrackWriter unheard(mission.dds_domain);
+  for (const Check& check : inspect_dds(mission, 0.3)) {
+    EXPECT_EQ(check.level, Check::Level::kMissing) << check.name;
+    EXPECT_TRUE(has(check.remedy, "UDP port " + std::to_string(ntohs(where.sin_port)))) << check.remedy;
+    EXPECT_TRUE(has(check.remedy, "0 to 101")) << check.remedy;
+  }
+  close(thief);
+  EXPECT_EQ(jink::bridge::discovery_trouble(mission.dds_domain), "");
 }
 
 TEST(DdsInspect, NamesTheOffsetOfAClock) {

@@ -111,10 +111,10 @@ def test(jink, instance):
         status, checks, _ = doctor(arena, outside, "--seconds", "2")
         check(status == 1 and checks["geofence"]["level"] == "fault", "a vehicle outside of the geofence: exit status 1")
 
-        elsewhere = arena.mission("sitl", dds={"domain": arena.domain + 40})
+        elsewhere = arena.mission("sitl", dds={"domain": arena.domain + 50})
         status, checks, _ = doctor(arena, elsewhere, "--seconds", "2")
         check(status == 3 and checks["rt/jink/obstacle_tracks"]["level"] == "missing", "no tracks there: exit status 3")
-        optional = arena.mission("sitl", dds={"domain": arena.domain + 40}, tracks={"required": False})
+        optional = arena.mission("sitl", dds={"domain": arena.domain + 50}, tracks={"required": False})
         status, checks, _ = doctor(arena, optional, "--seconds", "2")
         check(status == 0 and checks["rt/jink/obstacle_tracks"]["level"] == "warning", "not required: a warning")
 
