@@ -32,20 +32,24 @@ Vec3 random_center(RandomStream& random, const planner::Box& box) {
   return {x, y, random.uniform(box.min.z(), box.max.z())};
 }
 
-/// Whether it never leaves the target by a metre, so that nobody could arrive. All motions here have gone round once in
-/// that time, or to their farthest.
+/// Whether it never leaves the target by a metre for long enough that somebody could arrive and stay for a while. All
+/// motions here have gone round once in that time, or to their farthest.
 bool occupies_target(const World& world) {
-  constexpr double kRound = 75.0;  // s
-  constexpr double kFree = 1.0;    // m
+  constexpr int kSamples = 300;
+  constexpr double kPeriod = 0.25;  // s, between samples
+  constexpr double kFree = 1.0;     // m
+  constexpr double kStay = 10.0;    // s
   const Vec3& target = world.scenario().target;
-  if (world.clearance(target, 0.0) > 10.0) return false;  // far away
-  for (double t = 0.0; t < kRound; t += 0.25) {
-    if (world.clearance(target, t) > kFree) return false;
+  if (world.clearance(target, 0.0) > 15.0) return false;  // too far away ever to come
+  double free = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    free = world.clearance(target, i * kPeriod) > kFree ? free + kPeriod : 0.0;
+    if (free >= kStay) return false;
   }
   return true;
 }
 
-/// Adds cubes until there are `count`, drawn anew where one is near the start at t = 0 or always at the target.
+/// Adds cubes until there are `count`, drawn anew where one is near the start at t = 0 or keeps the target busy.
 /// `draw(i)` is the i-th's motion.
 template <typename Draw>
 void add_cubes(config::Scenario& scenario, int count, const Draw& draw) {
@@ -66,8 +70,9 @@ void add_cubes(config::Scenario& scenario, int count, const Draw& draw) {
 // mader: goal (75, 0, 1), centres x 2 to 75, y ±3, z 1 to 2, offsets ±2π.
 // differs: there the 35 % that swing in z, by -sin(t + offset), are poles of 0.4 x 0.4 x 4 m and beams of 0.4 x 8 x 0.4
 // m, whose enclosing spheres would close the corridor for whoever is told of spheres; here they are cubes like the
-// others and keep the others' time. None is within kStartClearance of the start at first. None swings at the goal,
-// where nobody could arrive (there, a flight counts from x = 74 m on). The vehicle's limits are SANDO's.
+// others and keep the others' time. None is within kStartClearance of the start at first. None sweeps
+// the goal, where nobody could stay (there, a flight is over when it passes x = 74 m). The vehicle's limits are
+// SANDO's.
 void build_mader(config::Scenario& scenario, RandomStream& random, int count) {
   constexpr double kSlower = 1.1;
   fly_at_the_limit(scenario);
