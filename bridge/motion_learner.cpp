@@ -13,14 +13,16 @@ namespace {
 using planner::Vec3;
 
 constexpr double kSpacing = 0.05;        // s, between samples at first
-constexpr double kFitPeriod = 0.25;      // s
+constexpr double kFitPeriod = 0.15;      // s
 constexpr double kPatience = 4.0;        // fit periods, between fits where there is little to learn
-constexpr double kShortest = 0.4;        // s, of history for a first fit
+constexpr double kShortest = 0.3;        // s, of history for a first fit
 constexpr double kPlainMisfit = 0.1;     // m in kLead seconds, with which plain prediction does
 constexpr double kProven = 0.25;         // m in kLead seconds, with which a fit has proved right
 constexpr double kBetter = 0.6;          // times plain prediction's misfit, that its own may be
+constexpr double kCurving = 1.0;         // m/s², measured, with which plain prediction will not do for long
+constexpr double kMuchBetter = 0.1;      // the same, that proves it before kLead seconds are over
 constexpr double kSigmas = 3.0;          // of the estimate that a misfit may be by noise
-constexpr double kExact = 0.01;          // m, m/s: sigmas below are taken for this
+constexpr double kExact = 1e-4;          // m, m/s: sigmas below are taken for this
 constexpr double kBeyond = 0.1;          // m, that noise may put a track behind a bound
 constexpr double kTurnSpeed = 0.3;       // m/s, below which a turn is no bounce
 constexpr std::size_t kNoisyWindow = 5;  // samples on either side of a turn
@@ -86,6 +88,7 @@ void LearnedTrack::remember(const MotionSample& sample) {
 
 void LearnedTrack::observe(double t, const planner::Track& measured, const planner::Track& estimate, std::uint64_t name,
                            LearnedRoom& room) {
+  if (first_ < 0.0) first_ = t;
   remember({t, measured.position, measured.velocity});
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
@@ -98,6 +101,10 @@ void LearnedTrack::observe(double t, const planner::Track& measured, const plann
   }
   look_for_turn(t, measured, name, room);
   judge(t, estimate);
+  const bool curves = estimate.position_sigma <= 0.0 && estimate.acceleration.squaredNorm() > kCurving * kCurving;
+  const bool fails = std::any_of(trials_.begin(), trials_.end(),
+                                 [](const Trial& trial) { return trial.plain_misfit > kPlainMisfit + trial.noise; });
+  puzzling_ = !proven_ && !plain_ && (curves || fails);
 }
 
 void LearnedTrack::turned(double t, int axis, double where, double speed, std::uint64_t name, double radius,
@@ -156,12 +163,18 @@ void LearnedTrack::judge(double t, const planner::Track& estimate) {
     trial.plain_misfit =
         std::max(trial.plain_misfit, (planner::predict_position(trial.plain, lead, kTrust) - estimate.position).norm());
   }
-  while (!trials_.empty() && t - trials_.front().begun >= kLead) {
+  // Where plain prediction has gone wrong already and the fit has not, there is no need to wait.
+  const auto decided = [t](const Trial& trial) {
+    return t - trial.begun >= kLead || (trial.plain_misfit > kPlainMisfit + trial.noise &&
+                                        trial.misfit + trial.noise < kMuchBetter * trial.plain_misfit);
+  };
+  while (!trials_.empty() && decided(trials_.front())) {
     const Trial& trial = trials_.front();
     plain_ = trial.plain_misfit < kPlainMisfit + trial.noise;
     if (trial.misfit < kProven + trial.noise && trial.misfit < kBetter * trial.plain_misfit) {
       if (failures_ < 0) proven_ = trial.misfit;
       failures_ = std::min(failures_, 0) - 1;
+      if (trials_.size() == 1) next_fit_ = t;  // a forecast needs a fit that is on trial
     } else {
       proven_.reset();
       failures_ = std::max(failures_, 0) + 1;

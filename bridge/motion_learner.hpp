@@ -51,7 +51,12 @@ class LearnedTrack {
   [[nodiscard]] std::optional<Forecast> forecast(double now, double t, const planner::Track& estimate,
                                                  const LearnedRoom& room) const;
 
-  static constexpr double kLead = 1.0;  ///< s
+  /// Whether it is new, and not yet understood: plain prediction has been seen to fail or does not fit what is
+  /// measured, and nothing else has proved right. Never longer than kPuzzle.
+  [[nodiscard]] bool puzzling(double t) const { return puzzling_ && t - first_ < kPuzzle; }
+
+  static constexpr double kLead = 1.0;    ///< s
+  static constexpr double kPuzzle = 2.0;  ///< s
 
  private:
   static constexpr std::size_t kMost = 64;  // samples
@@ -73,6 +78,8 @@ class LearnedTrack {
   std::vector<MotionSample> recent_;  // the last few as measured
   std::vector<Trial> trials_;         // oldest first
   double next_fit_ = 0.0;
+  double first_ = -1.0;  // when it was observed first
+  bool puzzling_ = false;
   double frequency_ = 0.0;        // of the last fit; 0: none
   std::optional<double> proven_;  // m, misfit of the last trial that ended well
   bool plain_ = false;            // constant acceleration does as well

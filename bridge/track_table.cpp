@@ -112,11 +112,11 @@ void TrackTable::take(Entry& entry, const planner::Track& measured, double t) {
   entry.measured = t;
 }
 
-// The ways of the tracks about the vehicle; the fits that have been due the longest first.
+// The ways of the tracks about the vehicle; the fits of the nearest first.
 void TrackTable::learn(const TrackMessage& message, double t) {
   if (!vehicle_) return;
   struct Due {
-    double since;
+    double distance_squared;
     const planner::Track* measured;
     Entry* entry;
   };
@@ -125,7 +125,8 @@ void TrackTable::learn(const TrackMessage& message, double t) {
     const auto known = entries_.find({message.writer, measured.id});
     if (known == entries_.end() || known->second.measured != t) continue;
     Entry& entry = known->second;
-    const bool near = (entry.track.position - *vehicle_).squaredNorm() < kLearned * kLearned;
+    const double distance_squared = (entry.track.position - *vehicle_).squaredNorm();
+    const bool near = distance_squared < kLearned * kLearned;
     if (!near && entry.learned) {
       entry.learned.reset();
       --learned_;
@@ -136,11 +137,22 @@ void TrackTable::learn(const TrackMessage& message, double t) {
     }
     if (!entry.learned) continue;
     entry.learned->observe(t, measured, entry.track, measured.id, room_);
-    if (entry.learned->fit_due() <= t) due.push_back({entry.learned->fit_due(), &measured, &entry});
+    if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
   }
-  std::stable_sort(due.begin(), due.end(), [](const Due& a, const Due& b) { return a.since < b.since; });
+  std::stable_sort(due.begin(), due.end(),
+                   [](const Due& a, const Due& b) { return a.distance_squared < b.distance_squared; });
   if (due.size() > kFits) due.resize(kFits);
   for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track);
+}
+
+bool TrackTable::puzzled(double speed) const {
+  if (!vehicle_) return false;
+  return std::any_of(entries_.begin(), entries_.end(), [&](const auto& item) {
+    const Entry& entry = item.second;
+    if (!entry.learned || entry.is_self || !entry.learned->puzzling(entry.measured)) return false;
+    const double reach = kMeeting * (speed + entry.track.velocity.norm());
+    return (entry.track.position - *vehicle_).squaredNorm() < reach * reach;
+  });
 }
 
 void TrackTable::forget(double now) {

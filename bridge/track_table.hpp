@@ -53,6 +53,10 @@ class TrackTable {
   /// the same. `forecasts`, where given, gets what has been learned of their ways, valid at `now` too.
   std::vector<planner::Track> predict(double now, double trust, std::vector<Forecast>* forecasts = nullptr);
 
+  /// Whether a track that the vehicle could meet within kMeeting at `speed` moves in a way that is not understood yet
+  /// (LearnedTrack::puzzling). As of the last messages.
+  [[nodiscard]] bool puzzled(double speed) const;
+
   /// Reception of the newest message of any writer that watches; negative: none yet.
   [[nodiscard]] double newest_message() const { return newest_message_; }
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
@@ -65,6 +69,7 @@ class TrackTable {
   static constexpr std::size_t kMostLearned = 400;  ///< tracks whose ways are learned at a time
   static constexpr double kLearned = 40.0;          ///< m, from the vehicle's place, of these
   static constexpr int kFits = 8;                   ///< for a message, at most
+  static constexpr double kMeeting = 2.0;           ///< s
   static constexpr double kSelfWay = 1.0;           ///< m
   static constexpr double kForgetWriter = 60.0;     ///< s of silence, after which a writer is taken for ended
 

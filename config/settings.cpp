@@ -81,6 +81,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"back_range", &HorizonSettings::back_range, closed(0, 1000)},
     {"acceleration_share", &HorizonSettings::acceleration_share, above(0, 1)},
     {"emergency_share", &HorizonSettings::emergency_share, above(0, 1)},
+    {"acceleration_limit", &HorizonSettings::acceleration_limit, above(0, 1000)},
     {"braking", &HorizonSettings::braking, above(0, 1000)},
     {"margin", &HorizonSettings::margin, closed(0, 100)},
     {"sigma_factor", &HorizonSettings::sigma_factor, closed(0, 100)},

@@ -19,11 +19,6 @@ constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
 constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
 constexpr double kSeedClearance = 0.2;     // m, that manoeuvres aim for beyond the margin: the vehicle cuts corners
 
-HorizonSettings for_emergencies(HorizonSettings s) {
-  s.acceleration_share = std::max(s.acceleration_share, s.emergency_share);
-  return s;
-}
-
 OptimizerSettings sized(OptimizerSettings o, const HorizonSettings& s) {
   o.slaves = s.slaves;
   o.sharing = s.sharing;
@@ -109,7 +104,7 @@ std::vector<double> start_solutions(const PathProblem& problem, const PathReques
 HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer)
     : settings_(settings),
       problem_(settings),
-      emergency_(for_emergencies(settings)),
+      emergency_(settings.for_emergencies()),
       optimizer_(sized(optimizer, settings), problem_.dimension(), problem_.objectives()) {}
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,

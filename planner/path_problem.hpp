@@ -76,7 +76,7 @@ class PathProblem final : public Problem {
   static constexpr int kMaxSteps = 256;
 
   [[nodiscard]] double most_acceleration() const {
-    return settings_.acceleration_share * request_.vehicle.max_acceleration;
+    return settings_.planned_acceleration(request_.vehicle.max_acceleration);
   }
   void undisturbed_flight();
   void predict_obstacles();

@@ -3,6 +3,7 @@
 // equal.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace jink::planner {
@@ -63,26 +64,38 @@ struct HorizonSettings {
   int slaves = 4;
   int sharing = 3;
   int population = 48;
-  int generations = 100;            ///< budget of one plan in virtual time, and the upper bound in real time
-  double deadline_ms = 20.0;        ///< budget of one plan in real time
-  double lateral_range = 6.0;       ///< how far waypoints may leave the straight line
-  double back_range = 2.0;          ///< how far they may fall back behind the start
-  double acceleration_share = 0.5;  ///< of the vehicle's limit that plans use; the rest is for tracking them
-  double emergency_share = 0.9;     ///< the same where nothing else keeps the margin
-  double braking = 2.0;             ///< deceleration planned towards a stop, m/s²
-  double margin = 0.35;             ///< kept from every obstacle on top of the radii, for the tracking error
-  double sigma_factor = 2.0;        ///< standard deviations of a track's position that clearance is asked for
-  double track_acceleration = 0.4;  ///< what a track's acceleration may be off by, m/s²
-  double acceleration_trust = 0.7;  ///< how long a track's measured acceleration is believed to last
-  double clearance_limit = 0.8;     ///< the most that uncertainty may ask for on top of the margin
-  double time_weight = 0.5;         ///< of lost time, as length at cruise speed, in the length objective
-  double deviation_weight = 0.3;    ///< of the mean distance from undisturbed flight, in the length objective
-  double length_band = 0.1;         ///< solutions longer than the shortest feasible one by this fraction are not chosen
-  double weight_length = 0.6;       ///< modified TOPSIS
+  int generations = 100;             ///< budget of one plan in virtual time, and the upper bound in real time
+  double deadline_ms = 20.0;         ///< budget of one plan in real time
+  double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
+  double back_range = 2.0;           ///< how far they may fall back behind the start
+  double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them
+  double emergency_share = 0.9;      ///< the same where nothing else keeps the margin
+  double acceleration_limit = 10.0;  ///< as which a higher limit counts, m/s²: a tilt of 45 degrees
+  double braking = 2.0;              ///< deceleration planned towards a stop, m/s²
+  double margin = 0.35;              ///< kept from every obstacle on top of the radii, for the tracking error
+  double sigma_factor = 2.0;         ///< standard deviations of a track's position that clearance is asked for
+  double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
+  double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
+  double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
+  double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
+  double deviation_weight = 0.3;     ///< of the mean distance from undisturbed flight, in the length objective
+  double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this fraction are not chosen
+  double weight_length = 0.6;  ///< modified TOPSIS
   double weight_steering = 0.05;
   double weight_clearance = 0.35;
   bool seeding = true;       ///< whether the search starts from manoeuvres
   double keep_ratio = 0.05;  ///< a previous plan is kept unless a new one is better by this fraction
+
+  /// The same settings, of more acceleration.
+  [[nodiscard]] HorizonSettings for_emergencies() const {
+    HorizonSettings result = *this;
+    result.acceleration_share = std::max(acceleration_share, emergency_share);
+    return result;
+  }
+  /// The most that plans use for a vehicle with this limit, m/s².
+  [[nodiscard]] double planned_acceleration(double max_acceleration) const {
+    return acceleration_share * std::min(max_acceleration, acceleration_limit);
+  }
 };
 
 }  // namespace jink::planner

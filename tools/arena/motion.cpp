@@ -78,11 +78,11 @@ Vec3 undisturbed_velocity(const planner::PathRequest& request, double braking, c
 }
 
 double normal_acceleration(const planner::PathRequest& request, const planner::HorizonSettings& settings) {
-  return settings.acceleration_share * request.vehicle.max_acceleration;
+  return settings.planned_acceleration(request.vehicle.max_acceleration);
 }
 
 double hardest_acceleration(const planner::PathRequest& request, const planner::HorizonSettings& settings) {
-  return std::max(settings.acceleration_share, settings.emergency_share) * request.vehicle.max_acceleration;
+  return settings.for_emergencies().planned_acceleration(request.vehicle.max_acceleration);
 }
 
 }  // namespace jink::arena
