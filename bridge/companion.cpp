@@ -223,7 +223,11 @@ void Companion::start_plan(double now) {
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
-  if (table_.puzzled(mission_.vehicle.cruise_speed)) request.vehicle.cruise_speed *= kCautious;
+  const bool cautious = table_.puzzled(mission_.vehicle.cruise_speed);
+  if (cautious) request.vehicle.cruise_speed *= kCautious;
+  if (cautious != announced_cautious_)
+    event(now, "caution", cautious ? "a new track nearby moves in a way not understood yet: slower" : "over");
+  announced_cautious_ = cautious;
   request.volume = volume(request.position, request.target);
   request.margin = margin();
   summary_.largest_margin = std::max(summary_.largest_margin, request.margin);

@@ -144,6 +144,7 @@ class Companion {
   Vec3 estimate_shift_ = Vec3::Zero();
   double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
   bool planner_failed_ = false;
+  bool announced_cautious_ = false;
   bool announced_lost_ = false;
   TrackTableCounts announced_table_;
   int announced_own_ = 0;

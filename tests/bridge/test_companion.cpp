@@ -119,6 +119,33 @@ TEST(Companion, AppliesAPlanFromItsStart) {
   EXPECT_EQ(loop.companion.summary().deadline_misses, 0U);
 }
 
+// Until it is known how it moves, or for as long as is worth waiting.
+TEST(Companion, CruisesSlowlyPastWhatItDoesNotUnderstand) {
+  const double cruise = Loop::mission().vehicle.cruise_speed;
+  for (const double distance : {6.0, 35.0}) {
+    Loop loop;
+    loop.airborne();
+    for (double t = 0.0; t < 6.0; t += Loop::kTurn) {
+      // A circle of 1 m once in 3 s about a place ahead.
+      const double phase = 2.1 * loop.now;
+      const Vec3 out(std::cos(phase), std::sin(phase), 0.0);
+      const Vec3 along(-out.y(), out.x(), 0.0);
+      loop.seen = {{.id = 3,
+                    .position = Vec3(distance, 3, 2) + out,
+                    .velocity = 2.1 * along,
+                    .acceleration = -2.1 * 2.1 * out,
+                    .radius = 0.4}};
+      loop.turn();
+    }
+    std::vector<double> speeds;
+    for (const PlanJob& job : loop.planner.jobs) speeds.push_back(job.request.vehicle.cruise_speed);
+    ASSERT_GT(speeds.size(), 20U);
+    EXPECT_EQ(speeds.front(), distance < 10.0 ? 0.3 * cruise : cruise) << distance;
+    EXPECT_EQ(speeds.back(), cruise) << distance;
+    EXPECT_EQ(loop.recorder.count("caution"), distance < 10.0 ? 2 : 0) << distance;
+  }
+}
+
 TEST(Companion, PlansFromWhereTheReferenceWillBe) {
   Loop loop;
   loop.seen = {{.id = 3, .position = {5, 5, 2}, .velocity = {0, -1, 0}, .radius = 0.4}};

@@ -120,6 +120,47 @@ TEST(LearnedTrack, ForecastsATrefoilWithinOnePeriod) {
   for (const double ahead : {0.5, 1.0, 2.0}) EXPECT_LT((path.position(ahead) - trefoil(6.0 + ahead)).norm(), 0.25);
 }
 
+// Where measurements are exact, there is no need to wait for the better part of a period.
+TEST(LearnedTrack, ForecastsAnExactTrefoilSoon) {
+  Watched watched;
+  watched.watch(trefoil, 1.4);
+  const auto forecast = watched.forecast(1.4);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_TRUE(forecast->replaces);
+  const planner::KnownPath path = to_path(*forecast, 2.0, 0.1);
+  for (const double ahead : {0.5, 1.0}) EXPECT_LT((path.position(ahead) - trefoil(1.4 + ahead)).norm(), 0.15) << ahead;
+}
+
+TEST(LearnedTrack, PuzzlesUntilItIsUnderstood) {
+  Watched watched;
+  watched.watch(trefoil, 0.0);
+  EXPECT_TRUE(watched.learned.puzzling(0.0));
+  watched.t += kStep;
+  watched.watch(trefoil, 1.4);
+  EXPECT_FALSE(watched.learned.puzzling(1.4));
+  Watched steady;
+  steady.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 1.0);
+  EXPECT_FALSE(steady.learned.puzzling(1.0));
+}
+
+TEST(LearnedTrack, PuzzlesForAWhileOnly) {
+  // Thrown about at random: never understood.
+  Watched watched;
+  RandomStream random(5);
+  Vec3 push = Vec3::Zero();
+  Track track;
+  for (double t = 0.0; t < LearnedTrack::kPuzzle + 0.5; t += kStep) {
+    const Vec3 target(random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0));
+    push += 0.5 * (target - push);
+    track.acceleration = push;
+    track.velocity += kStep * push;
+    track.position += kStep * track.velocity;
+    watched.learned.observe(t, track, track, 1, watched.room);
+    if (watched.learned.fit_due() <= t) watched.learned.fit(t, track, track);
+    EXPECT_EQ(watched.learned.puzzling(t), t < LearnedTrack::kPuzzle && push.norm() > 0.0) << t;
+  }
+}
+
 TEST(LearnedTrack, LeavesSteadyMotionAlone) {
   Watched watched;
   watched.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 6.0);

@@ -157,7 +157,8 @@ TEST(PathProblem, StartsInTheRequestsState) {
   EXPECT_EQ(path.front().velocity, r.velocity);
 }
 
-// The limits are those of VehicleLimits, the acceleration acceleration_share of it. The last step, in which a path
+// The limits are those of VehicleLimits, the acceleration acceleration_share of it or of acceleration_limit, whichever
+// is less. The last step, in which a path
 // within 5 cm of the target is put on it, is not counted.
 TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
   const HorizonSettings settings;
@@ -166,6 +167,7 @@ TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
   for (int round = 0; round < 300; ++round) {
     PathRequest r = request(Vec3(0, 0, 2) + random_vector(random, round % 2 == 0 ? 30.0 : 5.0));
     r.velocity = 0.3 * random_vector(random, 5.0);
+    if (round % 3 == 0) r.vehicle.max_acceleration = 3.0 * settings.acceleration_limit;
     problem.prepare(r);
     const TimedPath path = problem.motion(random_variables(random, problem));
     ASSERT_GE(path.size(), 2U);
@@ -178,7 +180,8 @@ TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
       ASSERT_LE(path[i].velocity.norm(), r.vehicle.max_speed + 1e-9);
       ASSERT_LE(std::abs(path[i].velocity.z()), r.vehicle.max_climb + 1e-9);
       const Vec3 change = (path[i].velocity - path[i - 1].velocity) / settings.step;
-      ASSERT_LE(change.norm(), settings.acceleration_share * r.vehicle.max_acceleration + 1e-9);
+      const double most = std::min(r.vehicle.max_acceleration, settings.acceleration_limit);
+      ASSERT_LE(change.norm(), settings.acceleration_share * most + 1e-9);
       ASSERT_LT((change - path[i - 1].acceleration).norm(), 1e-6);
       ASSERT_LT((moved - 0.5 * (path[i].velocity + path[i - 1].velocity)).norm(), 1e-9);
     }
