@@ -90,6 +90,7 @@ TEST_P(EveryPilot, FliesTheSameBitsAtAnyNumberOfThreadsAndBesideOthers) {
   fly(GetParam(), scenario, with, 1, &one);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(more.size());
     for (Recorder& recorder : more) threads.emplace_back([&] { fly(GetParam(), scenario, with, 4, &recorder); });
   }
   ASSERT_FALSE(one.numbers.empty());

@@ -12,7 +12,6 @@
 namespace jink::bridge {
 namespace {
 
-using planner::RandomStream;
 using planner::Track;
 using planner::Vec3;
 
