@@ -61,8 +61,8 @@ Solution solve(std::span<const MotionSample> samples, const Weights& weights, do
       speed[2 * k] = k * frequency * c;
     }
     const Vec3 position = sample.position - last.position;
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(place, weights.position);
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(speed, weights.velocity);
+    normal += place * (weights.position * place).transpose();
+    normal += speed * (weights.velocity * speed).transpose();
     right += weights.position * place * position.transpose() + weights.velocity * speed * sample.velocity.transpose();
     total += weights.position * position.squaredNorm() + weights.velocity * sample.velocity.squaredNorm();
   }

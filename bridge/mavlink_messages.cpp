@@ -83,7 +83,7 @@ bool read(const json& fields, Attitude& message) {
 // The velocity in NED: as it stands (child frame LOCAL_NED, as PX4 has it) or turned from the body's axes; NaN for any
 // other frame, and where the attitude is none.
 Vec3 odometry_velocity_ned(const json& fields) {
-  const Vec3 velocity = vector(fields, "vx", "vy", "vz");
+  Vec3 velocity = vector(fields, "vx", "vy", "vz");
   std::uint32_t child_frame = 0;
   (void)read(fields, "child_frame_id", child_frame);
   if (child_frame == kLocalNed) return velocity;

@@ -54,7 +54,7 @@ class MavsdkLink::Impl {
   };
   enum class From { kAutopilot, kAnyComponent };
   struct Interest {
-    const char* name;
+    const char* name = nullptr;
     From from = From::kAutopilot;
   };
 

@@ -191,7 +191,7 @@ TimedPath Team::committed(double now, const VehicleState& own, const SetpointStr
     return {here, {now + kDrift, own.position + kDrift * own.velocity, Vec3::Zero(), Vec3::Zero()}};
   }
   // In take-off the place to hold is a step away.
-  const TimedPath path = followed->ahead(now);
+  TimedPath path = followed->ahead(now);
   const double way = (path.front().position - own.position).norm();
   if (path.size() > 1 || way <= kOnTheWay) return path;
   return {here, {now + way / kWaySpeed, path.front().position, Vec3::Zero(), Vec3::Zero()}};

@@ -54,6 +54,7 @@ const Kind& kind_of(FaultKind kind) {
 
 std::vector<std::string_view> names_of_kinds() {
   std::vector<std::string_view> names;
+  names.reserve(kKinds.size());
   for (const Kind& kind : kKinds) names.push_back(kind.name);
   return names;
 }

@@ -63,7 +63,7 @@ std::string read_connection(const Value& value) {
 
 // A waypoint counts at the height at which it is flown, see load_mission.
 planner::Vec3 read_waypoint(const Value& value, const Mission& mission) {
-  const planner::Vec3 point = value.vec3(kCoordinate);
+  planner::Vec3 point = value.vec3(kCoordinate);
   planner::Vec3 flown = point;
   flown.z() = std::max(point.z(), mission.min_height);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -103,7 +103,7 @@ Transport read_transport(const Value& value) {
 
 // What may stand before PX4's topics: one or more names of letters, digits and underscores, parted by slashes.
 std::string read_namespace(const Value& value) {
-  const std::string text = value.text();
+  std::string text = value.text();
   const auto good = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/';
   };

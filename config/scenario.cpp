@@ -168,7 +168,7 @@ EstimateErrors read_estimate(const Value& value) {
 }
 
 Vec3 read_point_in_world(const Map& map, std::string_view key, const std::optional<planner::Box>& world) {
-  const Vec3 point = map.vec3(key, kCoordinate);
+  Vec3 point = map.vec3(key, kCoordinate);
   for (std::size_t i = 0; world && i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const Range range = closed(world->min[axis], world->max[axis]);

@@ -282,6 +282,7 @@ void apply_all(const std::vector<Override>& changes, Settings& settings) {
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Settings settings = read_file(file);
   std::vector<Override> changes;
+  changes.reserve(overrides.size());
   for (const std::string& argument : overrides) changes.emplace_back(argument);
   apply_all(changes, settings);
   return settings;
@@ -295,6 +296,7 @@ Settings recorded_settings(const std::string& source, const std::vector<SettingT
     if (!known) missing.push_back(setting.key);
   }
   std::vector<Override> changes;
+  changes.reserve(values.size() + overrides.size());
   for (const SettingText& value : values) changes.emplace_back(source, value);
   for (const std::string& argument : overrides) changes.emplace_back(argument);
   apply_all(changes, settings);

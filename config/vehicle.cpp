@@ -32,6 +32,7 @@ constexpr std::array<Field, 8> kFields = {{
 
 planner::VehicleLimits read_limits(const Value& value) {
   std::vector<std::string_view> keys;
+  keys.reserve(kFields.size());
   for (const Field& field : kFields) keys.push_back(field.name);
   const Map map(value, std::move(keys));
   planner::VehicleLimits limits;

@@ -23,8 +23,8 @@ namespace jink::config {
 class Value {
  public:
   /// `source` is the file as the user named it, or "--set TEXT"; `line` counts from 1, 0: the source has no lines.
-  Value(YAML::Node node, std::string source, std::string path, int line)
-      : node_(std::move(node)), source_(std::move(source)), path_(std::move(path)), line_(line) {}
+  Value(const YAML::Node& node, std::string source, std::string path, int line)
+      : node_(node), source_(std::move(source)), path_(std::move(path)), line_(line) {}
 
   /// A finite number; quoted ones are strings and rejected.
   [[nodiscard]] double number(const Range& range) const;

@@ -24,11 +24,11 @@ struct Clearance {
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
 struct MetObstacle {
-  Vec3 from, to;        ///< its centre when the step begins and ends
-  Vec3 middle;          ///< halfway
-  double hard, soft;    ///< distances of the centres that are asked for: never less, better not less
-  double near;          ///< from the middle: farther away, the soft distance is kept throughout the step
-  double near_squared;  ///< near²
+  Vec3 from, to;                  ///< its centre when the step begins and ends
+  Vec3 middle;                    ///< halfway
+  double hard = 0.0, soft = 0.0;  ///< distances of the centres that are asked for: never less, better not less
+  double near = 0.0;              ///< from the middle: farther away, the soft distance is kept throughout the step
+  double near_squared = 0.0;      ///< near²
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not

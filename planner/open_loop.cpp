@@ -60,7 +60,7 @@ Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint6
       paths[i].age = at_start.age + t;
       paths[i].until = at_start.until - t;
     }
-    const Plan part = planner.plan(from, previous, seed, number, budget, pool);
+    Plan part = planner.plan(from, previous, seed, number, budget, pool);
     if (part.status == PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;
     whole.evaluations += part.evaluations;

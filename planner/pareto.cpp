@@ -80,7 +80,7 @@ JINK_MULTIVERSION void count_before(std::span<const Cost> costs, std::array<std:
 
 void sort_lexicographically(std::span<const Cost> costs, std::span<int> sorted) {
   if (costs.size() <= kFew) {
-    std::array<std::int64_t, kFew> place;
+    std::array<std::int64_t, kFew> place;  // NOLINT(cppcoreguidelines-pro-type-member-init): count_before fills it
     count_before(costs, place);
     for (std::size_t i = 0; i < costs.size(); ++i) sorted[static_cast<std::size_t>(place[i])] = static_cast<int>(i);
     return;

@@ -130,8 +130,8 @@ void PathProblem::predict_obstacles() {
 // The lanes that are left over repeat the last solution.
 template <std::size_t kLanes>
 [[gnu::always_inline]] inline void PathProblem::evaluate_lanes(const double* x, std::span<Cost> costs) const {
-  std::array<const double*, kLanes> variables;
-  std::array<Cost*, kLanes> results;
+  std::array<const double*, kLanes> variables;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+  std::array<Cost*, kLanes> results;            // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t solution = std::min(i, costs.size() - 1);
     variables[i] = x + solution * lower_.size();

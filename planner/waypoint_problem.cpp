@@ -156,7 +156,7 @@ struct WaypointProblem::Kernel {
   // Objectives of kLanes solutions x[2 i], x[2 i + 1].
   JINK_MULTIVERSION static void evaluate(const WaypointProblem& problem, const double* x, Lane& f1, Lane& f2) {
     const Step& step = problem.step_;
-    Lanes to;
+    Lanes to;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below and by measure
     Lane violation;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double u = x[2 * i];
@@ -193,7 +193,7 @@ struct WaypointProblem::Kernel {
 };
 
 double WaypointProblem::violation(const Vec3& to) const {
-  Lanes lanes;
+  Lanes lanes;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below and by measure
   const Vec3 d = to - step_.from;
   lanes.dx.fill(d.x());
   lanes.dy.fill(d.y());

@@ -195,6 +195,7 @@ bool hits_straight(const World& world) {
   const auto hit = [](const SweepResult& nearest) { return nearest.min_clearance < -kStraightOverlap - 1e-3; };
   const std::vector<config::ScenarioVehicle> team = config::all_vehicles(world.scenario());
   std::vector<families::Mission> missions;
+  missions.reserve(team.size());
   for (const config::ScenarioVehicle& vehicle : team)
     missions.emplace_back(vehicle.start, vehicle.target, vehicle.vehicle);
   const auto way = [&](std::size_t k, double t) {

@@ -68,7 +68,7 @@ Flown fly_in(const fs::path& out, const CampaignSettings& settings, int threads,
 
 /// All results, without what was measured.
 std::string text_of(Results results) {
-  for (auto& [job, record] : results.flights) record.measured = {};
+  for (auto& flight : results.flights) flight.second.measured = {};
   return to_text(results) + table_csv(summarise(results)) + flights_csv(results, "out");
 }
 

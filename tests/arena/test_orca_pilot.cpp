@@ -85,6 +85,7 @@ TEST(OrcaPilot, KeepsTheLimitsOfTheVehicle) {
   planner::RandomStream random(5);
   for (int n = 0; n < 100; ++n) {
     std::vector<planner::Track> tracks;
+    tracks.reserve(12);
     for (int i = 0; i < 12; ++i) {
       tracks.push_back(ball(random.uniform(0.2, 1.0),
                             {random.uniform(1, 8), random.uniform(-3, 3), random.uniform(0, 4)},

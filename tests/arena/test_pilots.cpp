@@ -90,6 +90,7 @@ TEST_P(EveryPilot, FliesTheSameBitsAtAnyNumberOfThreadsAndBesideOthers) {
   fly(GetParam(), scenario, with, 1, &one);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(more.size());
     for (Recorder& recorder : more) threads.emplace_back([&] { fly(GetParam(), scenario, with, 4, &recorder); });
   }
   ASSERT_FALSE(one.numbers.empty());
@@ -135,7 +136,7 @@ TEST(Pilots, AreListedInTheirOrder) {
 }
 
 TEST(Pilots, UnknownOnesAreRefused) {
-  EXPECT_THROW(make_pilot("icarus", {}, 0.0), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_pilot("icarus", {}, 0.0)), std::invalid_argument);
 }
 
 // The hook's own pilot is what flies without it.

@@ -190,7 +190,7 @@ TEST(Page, NeedsNoNetworkAndEscapesWhatItShows) {
   EXPECT_NE(html.find("&lt;script&gt;&amp;"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   std::string without_name = html;
-  for (std::size_t at; (at = without_name.find("http://www.w3.org/2000/svg")) != std::string::npos;)
+  for (std::size_t at = 0; (at = without_name.find("http://www.w3.org/2000/svg")) != std::string::npos;)
     without_name.erase(at, 26);
   EXPECT_EQ(without_name.find("://"), std::string::npos);
 }

@@ -100,6 +100,7 @@ TEST(NearestVelocity, FindsNothingOnlyWhereNoSampleIsAllowed) {
   int none = 0;
   for (int n = 0; n < 500; ++n) {
     std::vector<HalfSpace> half_spaces;
+    half_spaces.reserve(8);
     for (int i = 0; i < 8; ++i) half_spaces.push_back({direction(random), random.uniform(-2.0, 2.0)});
     if (nearest_velocity(half_spaces, kSpeed, Vec3::Zero())) continue;
     ++none;
@@ -135,6 +136,7 @@ TEST(LeastViolatingVelocity, KeepsTheHardOnesAndNoSampleViolatesLess) {
   for (int n = 0; n < 200; ++n) {
     const std::vector<HalfSpace> hard{{Vec3::UnitZ(), -1.0}, {-Vec3::UnitZ(), -1.0}};
     std::vector<HalfSpace> soft;
+    soft.reserve(10);
     for (int i = 0; i < 10; ++i) soft.push_back({direction(random), random.uniform(0.0, 3.0)});
     double relaxed = 0.0;
     const Vec3 v = least_violating_velocity(hard, soft, kSpeed, Vec3::Zero(), &relaxed);

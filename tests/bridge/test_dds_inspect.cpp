@@ -29,7 +29,6 @@ using jink::bridge::DdsNode;
 using jink::bridge::DdsTrackWriter;
 using jink::bridge::inspect_dds;
 using jink::bridge::Payload;
-using jink::bridge::PayloadReader;
 using jink::bridge::PayloadWriter;
 using jink::bridge::testing::ChildProcess;
 using jink::bridge::testing::own_domain;
@@ -146,6 +145,10 @@ TEST(DdsInspect, SeesAMatchWithoutData) {
   EXPECT_TRUE(has(check.remedy, "UDP") && has(check.remedy, "--ipc=host"));
 }
 
+std::string near_match(const std::string& topic, const std::string& type) {
+  return "no writer, but perception has " + topic + " of type " + type;
+}
+
 TEST(DdsInspect, NamesNearMatches) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"jink/obstacle_tracks", jink::bridge::kTracksType},  // no rt/
@@ -160,7 +163,7 @@ TEST(DdsInspect, NamesNearMatches) {
     PayloadWriter writer(peer, topic, type);
     const Check check = find(inspect(mission), jink::bridge::kTracksTopic);
     EXPECT_EQ(check.level, Check::Level::kMissing) << topic;
-    EXPECT_EQ(check.finding, "no writer, but perception has " + topic + " of type " + type);
+    EXPECT_EQ(check.finding, near_match(topic, type));
     EXPECT_TRUE(has(check.remedy, "ROS 2: /jink/obstacle_tracks")) << check.remedy;
     EXPECT_EQ(has(check.remedy, "rt/ in front"), !topic.starts_with("rt/"));
   }

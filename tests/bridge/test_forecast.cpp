@@ -7,12 +7,10 @@
 
 #include "bridge/harmonic_fit.hpp"
 #include "bridge/motion_learner.hpp"
-#include "planner/random.hpp"
 
 namespace jink::bridge {
 namespace {
 
-using planner::RandomStream;
 using planner::Track;
 using planner::Vec3;
 
@@ -211,7 +209,7 @@ TEST(LearnedRoom, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
 
 TEST(LearnedTrack, TurnsWhereOthersTurned) {
   LearnedRoom room;
-  for (const std::uint64_t name : {1, 2}) {
+  for (const std::uint64_t name : {1U, 2U}) {
     LearnedTrack learned;
     for (double t = 0.0; t < 1.5; t += kStep) {
       const double y = 0.03 * static_cast<double>(name);

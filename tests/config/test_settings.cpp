@@ -27,7 +27,7 @@ int line_of(const std::string& text, const std::string& part) {
 }
 
 std::string set_error(const std::vector<std::string>& overrides) {
-  const std::string error = error_of([&] { static_cast<void>(load_settings(kShipped, overrides)); });
+  std::string error = error_of([&] { static_cast<void>(load_settings(kShipped, overrides)); });
   EXPECT_EQ(error.find('\n'), std::string::npos);
   return error;
 }

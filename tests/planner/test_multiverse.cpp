@@ -101,7 +101,7 @@ TEST(Wormhole, GoesBothWaysAlike) {
     above += value > 0.0 ? 1 : 0;
     sum += value;
   }
-  EXPECT_NEAR(above, kDraws / 2, 5 * 71);  // 5 sigma of a binomial: sqrt(20000)/2 = 71
+  EXPECT_NEAR(above, 0.5 * kDraws, 5 * 71);  // 5 sigma of a binomial: sqrt(20000)/2 = 71
   EXPECT_NEAR(sum / kDraws, 0.0, 5.0 * 0.577 / std::sqrt(kDraws));
 }
 

@@ -181,7 +181,7 @@ TEST(Verifier, StopsAcceleratingWhereTrustEndsWhateverTheRounding) {
 struct RandomCase {
   TimedPath path;
   std::vector<Track> tracks;
-  double trust;
+  double trust = kInfinity;
 };
 
 RandomCase random_case(std::uint64_t seed) {

@@ -21,7 +21,7 @@ config::ScenarioVehicle vehicle(const Vec3& start, const Vec3& target) {
 World world_with(std::vector<config::Obstacle> obstacles, std::optional<planner::Box> volume = std::nullopt) {
   config::Scenario scenario;
   scenario.obstacles = std::move(obstacles);
-  scenario.world = volume;
+  scenario.world = std::move(volume);
   return World(std::move(scenario));
 }
 
