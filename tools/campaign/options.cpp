@@ -39,8 +39,8 @@ bool goes_on(const std::filesystem::path& file, const std::string& out, bool res
     return false;
   }
   if (!resume)
-    throw tools::UsageError(fmt::format(
-        "--out: '{}' holds a campaign; --resume goes on with it, another folder begins a new one", out));
+    throw tools::UsageError(
+        fmt::format("--out: '{}' holds a campaign; --resume goes on with it, another folder begins a new one", out));
   return true;
 }
 
@@ -76,9 +76,8 @@ void ProgressPrinter::operator()(const Progress& p) {
 std::string ProgressPrinter::text(const Progress& p, Clock::time_point now) const {
   const double elapsed = std::chrono::duration<double>(now - begun_).count();
   const double share = p.total > 0.0 ? std::min(1.0, p.done / p.total) : 1.0;
-  const std::string left = p.in_this_run > 0.0
-                               ? fmt::format(", {} left", duration(elapsed * (p.total - p.done) / p.in_this_run))
-                               : "";
+  const std::string left =
+      p.in_this_run > 0.0 ? fmt::format(", {} left", duration(elapsed * (p.total - p.done) / p.in_this_run)) : "";
   return fmt::format("[{:{}}] {:3.0f} %  {}, {}{}", std::string(static_cast<std::size_t>(share * kBar), '#'), kBar,
                      100.0 * share, p.text, duration(elapsed), left);
 }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/study/verdicts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tools/study/algorithms/algorithms.hpp"
+#include "tools/study/tables.hpp"
+
+namespace jink::study {
+namespace {
+
+bool always(const Record&) {
+  return true;
+}
+bool has_reached(const Record& r) {
+  return r.value(key::kReached) > 0.0;
+}
+
+/// HV at the last checkpoint, negative: smaller is better.
+double lost_hv(const Record& r) {
+  return -r.series.at(key::kHvAt).back();
+}
+
+Verdict hv(const Selection& s, std::string_view other, bool blocked) {
+  return judge(paired_differences(s.anytime(kRetained, hardest_world(blocked)),
+                                  s.anytime(other, hardest_world(blocked)), lost_hv, always));
+}
+
+Verdict path(const Selection& s, std::string_view other, bool blocked,
+             const std::function<double(const Record&)>& value, const std::function<bool(const Record&)>& counts) {
+  return judge(paired_differences(s.paths(kRetained, hardest_world(blocked)), s.paths(other, hardest_world(blocked)),
+                                  value, counts));
+}
+
+std::string names_of(const std::vector<std::string>& list) {
+  if (list.size() < 2) return list.empty() ? "none" : list.front();
+  return fmt::format("{} and {}", fmt::join(list.begin(), list.end() - 1, ", "), list.back());
+}
+
+/// The respects in which the verdict is `wanted`.
+std::vector<std::string> subjects(const std::vector<Verdict>& verdicts, Outcome wanted) {
+  std::vector<std::string> list;
+  const std::vector<Respect> all = respects();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (verdicts[i].outcome == wanted) list.push_back(all[i].subject);
+  return list;
+}
+
+}  // namespace
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kBetter: return "better";
+    case Outcome::kWorse: return "worse";
+    case Outcome::kNoDifference: return "no difference shown";
+    case Outcome::kUnknown: break;
+  }
+  return "unknown";
+}
+
+Verdict judge(const std::vector<double>& differences) {
+  Verdict verdict;
+  verdict.pairs = static_cast<int>(differences.size());
+  if (differences.empty()) return verdict;
+  const Summary s = summary(differences);
+  verdict.mean = s.mean;
+  verdict.low = s.low;
+  verdict.high = s.high;
+  if (verdict.pairs < 2) return verdict;
+  verdict.outcome = s.high < 0.0 ? Outcome::kBetter : s.low > 0.0 ? Outcome::kWorse : Outcome::kNoDifference;
+  return verdict;
+}
+
+std::vector<Respect> respects() {
+  return {{"Hypervolume lost, scenario 5", "hypervolume in scenario 5", 4, false},
+          {"Hypervolume lost, blocked", "hypervolume in the blocked world", 4, false},
+          {"Path length, scenario 5 (mm)", "path length in scenario 5", 4, false},
+          {"Paths that fail, blocked (%)", "share of paths that fail in blocked worlds", 1, false},
+          {"Path length where both reach, blocked (mm)", "path length in blocked worlds", 1, false},
+          {"Planning time, scenario 5 (ms)", "planning time in scenario 5", 2, true},
+          {"Planning time, blocked (ms)", "planning time in blocked worlds", 2, true}};
+}
+
+std::vector<Verdict> compare(const Selection& s, std::string_view other) {
+  const auto length = [](const Record& r) { return 1000.0 * r.value(key::kLength); };
+  const auto failure = [](const Record& r) { return 100.0 * (1.0 - r.value(key::kReached)); };
+  const auto time = [](const Record& r) { return 1000.0 * r.measured.at(key::kPlanning); };
+  return {hv(s, other, false),
+          hv(s, other, true),
+          path(s, other, false, length, has_reached),
+          path(s, other, true, failure, always),
+          path(s, other, true, length, has_reached),
+          path(s, other, false, time, always),
+          path(s, other, true, time, always)};
+}
+
+Table verdict_table(const Selection& selection) {
+  Table table;
+  table.id = "verdicts";
+  table.title = fmt::format("{} minus each other algorithm: mean of paired differences with 95 % intervals; smaller is "
+                            "better for {}",
+                            label_of(kRetained), label_of(kRetained));
+  table.columns = {"Against"};
+  const std::vector<Respect> all = respects();
+  for (const Respect& respect : all) table.columns.push_back(respect.name);
+  for (const Algorithm& algorithm : algorithms()) {
+    if (algorithm.name == kRetained) continue;
+    const std::vector<Verdict> verdicts = compare(selection, algorithm.name);
+    std::vector<Cell> row{label(std::string(algorithm.label))};
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+      const Verdict& v = verdicts[i];
+      if (v.pairs == 0) {
+        row.push_back(nothing());
+        continue;
+      }
+      Cell cell = number(v.mean, all[i].decimals);
+      if (v.pairs > 1)
+        cell.text = fmt::format("{:+.{}f} [{:+.{}f}, {:+.{}f}] {}", v.mean, all[i].decimals, v.low, all[i].decimals,
+                                v.high, all[i].decimals, to_string(v.outcome));
+      cell.marked = v.outcome == Outcome::kWorse;
+      row.push_back(std::move(cell));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.notes.push_back("Bold: the other one is better. Intervals are each for itself, without a correction for their "
+                        "number.");
+  table.notes.push_back(timing_note(selection));
+  return table;
+}
+
+std::vector<std::string> verdict_sentences(const Selection& selection) {
+  std::vector<std::string> names{"nsga2", "moead"};
+  for (const Algorithm& algorithm : algorithms()) {
+    const std::string name(algorithm.name);
+    if (name != kRetained && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  std::vector<std::string> sentences;
+  for (const std::string& name : names) {
+    if (find_algorithm(name) == nullptr) continue;
+    const std::vector<Verdict> verdicts = compare(selection, name);
+    const auto better = subjects(verdicts, Outcome::kBetter);
+    const auto worse = subjects(verdicts, Outcome::kWorse);
+    const auto same = subjects(verdicts, Outcome::kNoDifference);
+    const auto unknown = subjects(verdicts, Outcome::kUnknown);
+    std::string text = fmt::format("**{} against {}:** ", label_of(kRetained), label_of(name));
+    text += worse.empty() ? "worse in nothing" : "worse in " + names_of(worse);
+    text += better.empty() ? "; better in nothing" : "; better in " + names_of(better);
+    if (!same.empty()) text += "; no difference shown in " + names_of(same);
+    if (!unknown.empty()) text += "; not known in " + names_of(unknown);
+    sentences.push_back(text + ".");
+  }
+  return sentences;
+}
+
+}  // namespace jink::study

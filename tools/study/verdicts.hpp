@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the numbers say: PMOMVO-6 against every other algorithm, and the paper's claims one by one. Nothing here is
+// written beforehand; each sentence follows from the records.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/study/presentation/table.hpp"
+#include "tools/study/selection.hpp"
+
+namespace jink::study {
+
+/// How one algorithm compares with another in one respect.
+enum class Outcome { kBetter, kWorse, kNoDifference, kUnknown };
+[[nodiscard]] std::string_view to_string(Outcome outcome);
+
+/// By the 95 % interval (Student) of the mean of paired differences, of which smaller ones speak for the first: better
+/// or worse where the interval is all on one side of 0; no difference where it is not, or all differences are 0;
+/// unknown for fewer than two pairs.
+struct Verdict {
+  Outcome outcome = Outcome::kUnknown;
+  int pairs = 0;
+  double mean = 0.0, low = 0.0, high = 0.0;  ///< of first minus second; 0 where there is no pair
+};
+[[nodiscard]] Verdict judge(const std::vector<double>& differences);
+
+/// A respect in which algorithms are compared.
+struct Respect {
+  std::string name;     ///< "path length, scenario 5 (mm)"
+  std::string subject;  ///< "shorter paths in scenario 5": what the better one has
+  int decimals = 0;
+  bool timed = false;
+};
+[[nodiscard]] std::vector<Respect> respects();
+
+/// The retained algorithm against `other` in each of respects().
+[[nodiscard]] std::vector<Verdict> compare(const Selection& selection, std::string_view other);
+
+/// "verdicts": a row for each other algorithm, a column for each respect.
+[[nodiscard]] Table verdict_table(const Selection& selection);
+
+/// Sentences: against whom the retained algorithm is worse, not shown to differ, or better, in which respects; first
+/// NSGA-II and MOEA/D, which are the standard.
+[[nodiscard]] std::vector<std::string> verdict_sentences(const Selection& selection);
+
+/// A claim of the paper and what these runs say of it.
+struct Claim {
+  std::string claim;    ///< in our words, with where it is made
+  std::string finding;  ///< with the numbers
+  Outcome outcome = Outcome::kUnknown;  ///< better: the runs agree; worse: they contradict; no difference: neither
+};
+[[nodiscard]] std::vector<Claim> judge_claims(const Selection& selection);
+
+/// "claims".
+[[nodiscard]] Table claim_table(const std::vector<Claim>& claims);
+
+}  // namespace jink::study
