@@ -96,17 +96,6 @@ void make_path(const Job& job, const Setting& setting, planner::WorkerPool& pool
   }
 }
 
-/// Runs up to `stop` of all iterations. An algorithm whose library cannot be stopped gets a budget that ends there,
-/// which is the same for one whose moves do not depend on how much is left.
-const planner::Front& run_until(planner::Optimizer& optimizer, const Job& job, const FrontStep& step,
-                                std::uint64_t stream, int stop, planner::WorkerPool& pool) {
-  const planner::Budget stopped{job.variant.iterations, planner::Budget::Time::max(), stop};
-  const planner::Front& front = optimizer.run(step.problem, {}, job.seed, stream, stopped, pool);
-  const auto allowed = static_cast<std::int64_t>(stop) * job.variant.population;
-  if (optimizer.report().evaluations <= allowed) return front;
-  return optimizer.run(step.problem, {}, job.seed, stream, planner::Budget{stop}, pool);
-}
-
 void make_anytime(const Job& job, const Setting& setting, planner::WorkerPool& pool, Record& record) {
   const std::vector<FrontStep>& steps = setting.steps_of(job.variant.world);
   const auto optimizer = make_optimizer(job, setting);
@@ -118,7 +107,8 @@ void make_anytime(const Job& job, const Setting& setting, planner::WorkerPool& p
     double hv = 0.0, seconds = 0.0, evaluations = 0.0;
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const auto begun = Clock::now();
-      const planner::Front& front = run_until(*optimizer, job, steps[s], s, stop, pool);
+      const planner::Budget budget{job.variant.iterations, planner::Budget::Time::max(), stop};
+      const planner::Front& front = optimizer->run(steps[s].problem, {}, job.seed, s, budget, pool);
       seconds += share * seconds_since(begun);
       hv += share * indicators(points_of(front), steps[s].reference).hv;
       evaluations += share * static_cast<double>(optimizer->report().evaluations);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "tools/study/algorithms/bounded_front.hpp"
+#include "tools/study/algorithms/comparators.hpp"
 
 namespace jink::study {
 namespace {
@@ -33,12 +34,15 @@ constexpr std::string_view kPaper2 = "[Paper] Algorithm 2, jink's planner";
 
 constexpr std::array kAlgorithms{
     Algorithm{"momvo", "MOMVO", kPaper1, make_momvo},
-    Algorithm{"pmomvo-2", "PMOMVO-2", kPaper2, make_pmomvo<2>},
-    Algorithm{"pmomvo-4", "PMOMVO-4", kPaper2, make_pmomvo<4>},
-    Algorithm{"pmomvo-6", "PMOMVO-6", kPaper2, make_pmomvo<6>},
-    Algorithm{"pmomvo-8", "PMOMVO-8", kPaper2, make_pmomvo<8>},
-    Algorithm{"pmomvo-10", "PMOMVO-10", kPaper2, make_pmomvo<10>},
-    Algorithm{"pmomvo-12", "PMOMVO-12", kPaper2, make_pmomvo<12>},
+    Algorithm{"pmomvo-2", "PMOMVO-2", kPaper2, make_pmomvo<2>, 2},
+    Algorithm{"pmomvo-4", "PMOMVO-4", kPaper2, make_pmomvo<4>, 4},
+    Algorithm{"pmomvo-6", "PMOMVO-6", kPaper2, make_pmomvo<6>, 6},
+    Algorithm{"pmomvo-8", "PMOMVO-8", kPaper2, make_pmomvo<8>, 8},
+    Algorithm{"pmomvo-10", "PMOMVO-10", kPaper2, make_pmomvo<10>, 10},
+    Algorithm{"pmomvo-12", "PMOMVO-12", kPaper2, make_pmomvo<12>, 12},
+#define JINK_COMPARATOR(name, label, source, make) Algorithm{name, label, source, make},
+#include "tools/study/algorithms/comparators.inc"
+#undef JINK_COMPARATOR
 };
 
 }  // namespace

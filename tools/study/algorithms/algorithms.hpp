@@ -22,6 +22,7 @@ struct Algorithm {
   std::string_view source;  ///< the paper or library that it is after, for the report
   std::unique_ptr<planner::Optimizer> (*make)(const planner::OptimizerSettings& settings, int dimension,
                                               int objectives);
+  int slaves = 1;  ///< m of PMOMVO-m
 };
 
 /// All of them, in the order of tables.
@@ -29,5 +30,8 @@ struct Algorithm {
 
 /// nullptr: no algorithm has this name.
 [[nodiscard]] const Algorithm* find_algorithm(std::string_view name);
+
+/// The version of pagmo2 that some of them are from.
+[[nodiscard]] std::string_view pagmo_version();
 
 }  // namespace jink::study
