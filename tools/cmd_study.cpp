@@ -19,7 +19,8 @@ constexpr int kRuns = 20;  // [Paper] section 5.2
 constexpr int kQuickRuns = 5;
 
 constexpr const char* kFooter =
-    "Writes into --out: runs.jsonl (a line for each run as it ends), tableNN.csv, .md and .tex, figureNN.png, .svg, .gp\n"
+    "Writes into --out: runs.jsonl (a line for each run as it ends), tableNN.csv, .md and .tex, figureNN.png, .svg, "
+    ".gp\n"
     "and .dat, worlds/ (the blocked worlds), planner.yaml and report.html, which reads as a short paper.\n"
     "Runs whose time is reported are made last, one at a time: leave the machine alone meanwhile.\n"
     "Exit codes: 0 the study ran to its end, whatever it found; 1 it is not complete (Ctrl-C, runs missing after\n"
@@ -91,7 +92,8 @@ int run_study(const StudyOptions& options, const Printer& printer) {
   results.add(machine);
   const std::size_t total = study::jobs_of(settings).size();
   const int threads = options.common.thread_count();
-  printer.line(fmt::format("seed {}: {} runs on {} threads, results in {}", settings.seed, total, threads, options.out));
+  printer.line(
+      fmt::format("seed {}: {} runs on {} threads, results in {}", settings.seed, total, threads, options.out));
   catch_signals();
   campaign::ProgressPrinter progress(printer);
   const study::Setting setting(settings, planner);
@@ -146,7 +148,8 @@ Subcommand add_study(CLI::App& jink) {
                   fmt::format("runs of each variant, with seeds of their own (default: {}, or {} with --quick)", kRuns,
                               kQuickRuns))
       ->check(CLI::Range(1, study::kMostStudyRuns));
-  app->add_flag("--quick", options->quick, "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
+  app->add_flag("--quick", options->quick,
+                "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
   app->add_option("--out", options->out, "folder for the results")->capture_default_str();
   app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
   app->add_option("--shard", options->shard,
@@ -155,8 +158,8 @@ Subcommand add_study(CLI::App& jink) {
   app->add_option("--merge", options->merge, "put the results in these folders together into --out")
       ->expected(1, campaign::kMostShards);
   options->common.add_to(*app);
-  app->get_option("--threads")->description(
-      "runs at once, and threads of the planner in timed runs, 1 to 256 (default: one for each core)");
+  app->get_option("--threads")
+      ->description("runs at once, and threads of the planner in timed runs, 1 to 256 (default: one for each core)");
   app->footer(kFooter);
   return {app, [options, app] {
             campaign::refuse_beside(*app, "--merge",

@@ -17,9 +17,12 @@ namespace {
 double work_of(const Variant& v, const planner::PaperSettings& paper) {
   const double search = static_cast<double>(v.population) * v.iterations;
   switch (v.kind) {
-    case RunKind::kPath: return search * (paper.waypoints - 2);
-    case RunKind::kFront: return search * kFrontSteps;
-    case RunKind::kAnytime: break;
+    case RunKind::kPath:
+      return search * (paper.waypoints - 2);
+    case RunKind::kFront:
+      return search * kFrontSteps;
+    case RunKind::kAnytime:
+      break;
   }
   double shares = 0.0;
   for (const double share : checkpoints()) shares += share;

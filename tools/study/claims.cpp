@@ -173,7 +173,8 @@ Claim sizes_claim(const Selection& s) {
               Outcome::kUnknown};
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const std::string& algorithm : own_algorithms()) {
-    for (const double m : size_means(s, algorithm, [](const Records& all) { return mean(values(all, key::kLength)); })) {
+    for (const double m :
+         size_means(s, algorithm, [](const Records& all) { return mean(values(all, key::kLength)); })) {
       least = std::min(least, m);
       greatest = std::max(greatest, m);
     }
@@ -196,8 +197,8 @@ Claim effort_claim(const Selection& s) {
   const double alone = growth("momvo");
   const double retained = growth(std::string(kRetained));
   if (alone <= 0.0 || retained <= 0.0) return claim;
-  claim.finding = fmt::format("from the smallest to the largest cell times {:.1f} for MOMVO, times {:.1f} for {}", alone,
-                              retained, label_of(kRetained));
+  claim.finding = fmt::format("from the smallest to the largest cell times {:.1f} for MOMVO, times {:.1f} for {}",
+                              alone, retained, label_of(kRetained));
   claim.outcome = alone > 1.0 && retained > 1.0 && retained < alone ? Outcome::kBetter : Outcome::kWorse;
   return claim;
 }
@@ -222,10 +223,14 @@ Claim others_claim(const Selection& s) {
 
 std::string agreement(Outcome outcome) {
   switch (outcome) {
-    case Outcome::kBetter: return "agrees";
-    case Outcome::kWorse: return "does not agree";
-    case Outcome::kNoDifference: return "not shown";
-    case Outcome::kUnknown: break;
+    case Outcome::kBetter:
+      return "agrees";
+    case Outcome::kWorse:
+      return "does not agree";
+    case Outcome::kNoDifference:
+      return "not shown";
+    case Outcome::kUnknown:
+      break;
   }
   return "unknown";
 }
@@ -246,8 +251,9 @@ std::vector<Claim> judge_claims(const Selection& s) {
           sizes_claim(s),
           effort_claim(s),
           others_claim(s),
-          against_momvo(s, "Harder, not in the paper: in blocked worlds PMOMVO fails less often than MOMVO, as a share",
-                        [](const Record& r) { return 1.0 - r.value(key::kReached); }, true, 3)};
+          against_momvo(
+              s, "Harder, not in the paper: in blocked worlds PMOMVO fails less often than MOMVO, as a share",
+              [](const Record& r) { return 1.0 - r.value(key::kReached); }, true, 3)};
 }
 
 Table claim_table(const std::vector<Claim>& claims) {

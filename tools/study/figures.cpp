@@ -53,7 +53,8 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
   result.figure.title = "Pareto fronts at the first step in " + world_text(blocked);
   result.figure.columns = 2;
   result.caption = fmt::format(
-      "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent, a "
+      "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent, "
+      "a "
       "panel for each sharing rate l; the line is the reference front. MOMVO does not share and is shown at l = 0.",
       step.station + 1, setting.planner.paper.waypoints, world_text(blocked));
   for (const int l : sharing_rates()) {
@@ -63,8 +64,8 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
     panel.y_label = "Steering f2 (normalised)";
     panel.x_range = panel.y_range = {-0.05, 1.1};
     for (const std::string& algorithm : own_algorithms()) {
-      const Records records = l == 0 || has_slaves(algorithm) ? selection.fronts(algorithm, hardest_world(blocked), l)
-                                                              : Records();
+      const Records records =
+          l == 0 || has_slaves(algorithm) ? selection.fronts(algorithm, hardest_world(blocked), l) : Records();
       if (records.empty()) continue;
       Series series = series_of(algorithm, Kind::points);
       series.x = records.front()->series.at(key::kF1);
@@ -88,8 +89,10 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
 }
 
 std::vector<CaptionedFigure> time_figures(const Selection& selection) {
-  CaptionedFigure sharing{{}, "Mean planning time over the sharing rate in scenario 5 with 95 % intervals. MOMVO, which "
-                              "does not share, is drawn across. " + timing_note(selection)};
+  CaptionedFigure sharing{{},
+                          "Mean planning time over the sharing rate in scenario 5 with 95 % intervals. MOMVO, which "
+                          "does not share, is drawn across. " +
+                              timing_note(selection)};
   sharing.figure.id = "figure13";
   sharing.figure.title = "Planning time over the sharing rate";
   CaptionedFigure slaves{{}, "The same over the number of slaves; 1 is MOMVO. " + timing_note(selection)};
@@ -121,8 +124,8 @@ std::vector<CaptionedFigure> time_figures(const Selection& selection) {
 }
 
 CaptionedFigure comparison_figure(const Selection& selection) {
-  CaptionedFigure result{{}, "Mean planning time in scenario 5 with 95 % intervals, on a logarithmic axis. " +
-                                 timing_note(selection)};
+  CaptionedFigure result{
+      {}, "Mean planning time in scenario 5 with 95 % intervals, on a logarithmic axis. " + timing_note(selection)};
   result.figure.id = "figure15";
   result.figure.title = "Planning time of all algorithms";
   Panel panel;
@@ -147,10 +150,10 @@ namespace {
 
 /// One row of panels: over population for each number of iterations, or the other way about.
 void add_size_panels(Figure& figure, const Selection& selection, bool over_population, bool blocked_length) {
-  const std::vector<int> inner = over_population ? population_factors(selection.settings())
-                                                 : iteration_factors(selection.settings());
-  const std::vector<int> outer = over_population ? iteration_factors(selection.settings())
-                                                 : population_factors(selection.settings());
+  const std::vector<int> inner =
+      over_population ? population_factors(selection.settings()) : iteration_factors(selection.settings());
+  const std::vector<int> outer =
+      over_population ? iteration_factors(selection.settings()) : population_factors(selection.settings());
   const PaperSizes& sizes = selection.sizes();
   for (const int o : outer) {
     Panel panel;

@@ -11,7 +11,7 @@ namespace jink::study {
 namespace {
 
 constexpr std::array<double, 4> kMoments{0.15, 0.4, 0.65, 0.9};  // shares of the flight that are pictured
-constexpr double kArrow = 0.4;                                    // s, of motion that an arrow shows
+constexpr double kArrow = 0.4;                                   // s, of motion that an arrow shows
 constexpr std::size_t kSeeds = 4;
 constexpr double kAround = 2.0;  // m, shown beyond the path
 
@@ -131,7 +131,8 @@ CaptionedFigure seeds_figure(const Selection& selection, const Setting& setting)
     Panel panel = space_panel(world);
     panel.title = blocked ? "blocked" : "instance 1";
     for (std::size_t i = 0; i < std::min(kSeeds, records.size()); ++i)
-      panel.series.push_back(path_series(*records[i], fmt::format("run {}", records[i]->job.run + 1), static_cast<int>(i)));
+      panel.series.push_back(
+          path_series(*records[i], fmt::format("run {}", records[i]->job.run + 1), static_cast<int>(i)));
     add_obstacles(panel, world, 0.5 * records.front()->value(key::kFlight));
     result.figure.panels.push_back(std::move(panel));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/study/front_steps.hpp"
 
+#include <Eigen/Geometry>  // cross products
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,12 +19,12 @@ using planner::Cost;
 using planner::Point2;
 using planner::Vec3;
 
-constexpr int kGrid = 257;           // points along each variable of the first search
-constexpr int kFine = 4;             // finer points to each side of one, in units of a quarter of the spacing
+constexpr int kGrid = 257;  // points along each variable of the first search
+constexpr int kFine = 4;    // finer points to each side of one, in units of a quarter of the spacing
 constexpr int kRefinements = 3;
-constexpr std::size_t kKept = 400;   // points of a front that are searched about, evenly along it
+constexpr std::size_t kKept = 400;  // points of a front that are searched about, evenly along it
 constexpr Point2 kReferencePoint{1.1, 1.1};
-constexpr double kBeside = 0.8;      // m, where the vehicle is
+constexpr double kBeside = 0.8;  // m, where the vehicle is
 constexpr double kAbove = 0.4;
 constexpr double kTurned = 35.0 * std::numbers::pi / 180.0;
 
@@ -72,8 +73,8 @@ Situation situation(const World& world, const planner::PaperSettings& settings, 
   Situation s;
   s.step.target = world.target;
   s.step.base = world.start + mission * (static_cast<double>(station) / segments);
-  s.step.from = world.start + mission * (static_cast<double>(station - 1) / segments) +
-                side * kBeside * frame.left + kAbove * frame.up;
+  s.step.from = world.start + mission * (static_cast<double>(station - 1) / segments) + side * kBeside * frame.left +
+                kAbove * frame.up;
   const Vec3 ahead = (world.target - s.step.from).normalized();
   s.step.direction = std::cos(kTurned) * ahead + std::sin(kTurned) * side * frame.left;
   const bool along_x = settings.axis == planner::Axis::kWorldX;

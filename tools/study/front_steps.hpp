@@ -37,7 +37,7 @@ struct Indicators {
 
 /// One step: which waypoint is looked for, and the problem of it.
 struct FrontStep {
-  int station = 0;  ///< of the path's waypoints, from 0, the start
+  int station = 0;   ///< of the path's waypoints, from 0, the start
   bool hit = false;  ///< whether the shortest way to the station is blocked
   planner::WaypointProblem problem;
   ReferenceFront reference;

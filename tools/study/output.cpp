@@ -59,9 +59,9 @@ void write_worlds(const Results& results, const Setting& setting, const fs::path
   for (const auto& [number, record] : results.runs) {
     const Job& job = record.job;
     if (!is_blocked(job.variant.world) || job.variant.kind != RunKind::kPath) continue;
-    names.try_emplace(is_pictured(job.variant.world) ? job.variant.world
-                                                      : fmt::format("{}-run{}", job.variant.world, job.run + 1),
-                      job.variant.world, job.run);
+    names.try_emplace(
+        is_pictured(job.variant.world) ? job.variant.world : fmt::format("{}-run{}", job.variant.world, job.run + 1),
+        job.variant.world, job.run);
   }
   std::error_code error;
   fs::create_directories(out / "worlds", error);

@@ -26,7 +26,7 @@ struct Record {
 namespace key {
 // Of every run.
 inline constexpr const char* kEvaluations = "evaluations";
-inline constexpr const char* kThreads = "threads";     ///< measured: of the planner
+inline constexpr const char* kThreads = "threads";      ///< measured: of the planner
 inline constexpr const char* kPlanning = "planning_s";  ///< measured, path and front: wall time of the search, s
 // Of a front: means over the steps, and the first step's front in units of the reference's bounds.
 inline constexpr const char* kHv = "hv";

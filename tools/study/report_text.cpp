@@ -55,20 +55,20 @@ Facts run_facts(const Selection& s) {
                  {"Seed", std::to_string(s.settings().seed)},
                  {"Runs of each variant", std::to_string(s.settings().runs)},
                  {"Shard", campaign::to_string(s.settings().shard)},
-                 {"Population, iterations, sharing", fmt::format("{}, {}, {}", s.sizes().population, s.sizes().iterations,
-                                                                 s.sizes().sharing)}};
+                 {"Population, iterations, sharing",
+                  fmt::format("{}, {}, {}", s.sizes().population, s.sizes().iterations, s.sizes().sharing)}};
   std::vector<std::string> seeds;
   for (int run = 0; run < std::min(s.settings().runs, 5); ++run)
     seeds.push_back(std::to_string(run_seed(s.settings().seed, run)));
   facts.facts.emplace_back("Seeds of the runs", fmt::format("{}{} (each in `runs.jsonl`)", fmt::join(seeds, ", "),
                                                             s.settings().runs > 5 ? " ..." : ""));
   for (const Machine& m : s.results().machines)
-    facts.facts.emplace_back("Machine", fmt::format("{}, {} core{}, {}; {}", m.cpu, m.cores, m.cores == 1 ? "" : "s",
-                                                    m.system, m.compiler));
-  facts.facts.emplace_back("Constraint", fmt::format("`paper.constraint: {}`, `paper.axis: {}`, {} waypoints",
-                                                     parameter(s.settings(), "paper.constraint"),
-                                                     parameter(s.settings(), "paper.axis"),
-                                                     parameter(s.settings(), "paper.waypoints")));
+    facts.facts.emplace_back(
+        "Machine", fmt::format("{}, {} core{}, {}; {}", m.cpu, m.cores, m.cores == 1 ? "" : "s", m.system, m.compiler));
+  facts.facts.emplace_back(
+      "Constraint",
+      fmt::format("`paper.constraint: {}`, `paper.axis: {}`, {} waypoints", parameter(s.settings(), "paper.constraint"),
+                  parameter(s.settings(), "paper.axis"), parameter(s.settings(), "paper.waypoints")));
   facts.facts.emplace_back("Operators of MOMVO and PMOMVO", parameter(s.settings(), "optimizer.operators"));
   return facts;
 }
@@ -79,7 +79,8 @@ void what_was_run(Sections& out, const Selection& s, const Setting& setting) {
   out.facts(run_facts(s));
   out.text(
       "Every algorithm solves the same problem objects with the same number of evaluations (population times "
-      "iterations) and gives a front of at most the same size. Run number k of every variant has the same seed, so runs "
+      "iterations) and gives a front of at most the same size. Run number k of every variant has the same seed, so "
+      "runs "
       "are compared in pairs. All results but times are the same bit by bit for any number of threads. Runs whose time "
       "is reported are made one at a time, after all others, with nothing else of the study beside them.");
   out.text(
@@ -98,9 +99,10 @@ void what_was_run(Sections& out, const Selection& s, const Setting& setting) {
       hit += step.hit ? 1 : 0;
       hv += step.reference.hypervolume / static_cast<double>(steps.size());
     }
-    at.push_back(fmt::format("{}: waypoints {}; the shortest way is blocked at {} of them; the reference fronts have a "
-                             "mean HV of {:.4f}",
-                             blocked ? "Blocked world" : "Scenario 5", fmt::join(stations, ", "), hit, hv));
+    at.push_back(
+        fmt::format("{}: waypoints {}; the shortest way is blocked at {} of them; the reference fronts have a "
+                    "mean HV of {:.4f}",
+                    blocked ? "Blocked world" : "Scenario 5", fmt::join(stations, ", "), hit, hv));
   }
   out.text(
       "Tables 3 to 5 and the anytime curves need one problem that all solve. At the start of a path the straight way "
@@ -128,20 +130,24 @@ std::vector<std::string> doubtful_numbers() {
       points.push_back(fmt::format("{} ({}): {}", n.where, n.printed, n.note));
   }
   std::vector<std::string> counts;
-  for (const auto& [table, count] : deviations) counts.push_back(fmt::format("{} in {}", count, table_name(std::string(table))));
+  for (const auto& [table, count] : deviations)
+    counts.push_back(fmt::format("{} in {}", count, table_name(std::string(table))));
   if (!counts.empty())
-    points.insert(points.begin(), fmt::format("Standard deviations that do not fit best, mean and worst beside them: {}",
-                                              fmt::join(counts, ", ")));
+    points.insert(points.begin(),
+                  fmt::format("Standard deviations that do not fit best, mean and worst beside them: {}",
+                              fmt::join(counts, ", ")));
   return points;
 }
 
 void what_cannot_be(Sections& out) {
   out.begin("What of the paper cannot be reproduced");
   out.list(
-      {"Obstacle radii, vehicle size, cruise speed, time step, number of waypoints, the steering limit, the penalty, the "
+      {"Obstacle radii, vehicle size, cruise speed, time step, number of waypoints, the steering limit, the penalty, "
+       "the "
        "archive's size and the width of a narrow pass are not given. Ours are in `planner.yaml` beside this page, and "
        "obstacles have 0.5 m.",
-       "With the printed positions and speeds the straight flight is free in all five scenarios of Table 2, so that the "
+       "With the printed positions and speeds the straight flight is free in all five scenarios of Table 2, so that "
+       "the "
        "shortest path is the straight line and SLR 1. A mean SLR of 1.02, as the paper has, is then a search that has "
        "not ended, and says nothing about avoidance. Hence the blocked worlds.",
        "The paper's flight time FT is hundreds of seconds for 12 to 22 m: it is for the most part the run time of a "
@@ -164,10 +170,12 @@ std::vector<std::string> disagreements(const std::vector<Claim>& claims) {
 
 std::vector<std::string> abstract_of(const Selection& s, const ReportParts& parts) {
   const auto count = [&](Outcome outcome) {
-    return std::count_if(parts.claims.begin(), parts.claims.end(), [&](const Claim& c) { return c.outcome == outcome; });
+    return std::count_if(parts.claims.begin(), parts.claims.end(),
+                         [&](const Claim& c) { return c.outcome == outcome; });
   };
   std::vector<std::string> paragraphs{fmt::format(
-      "Section 5 of the paper again, with {} runs of each variant: all its tables and figures, the same on worlds whose "
+      "Section 5 of the paper again, with {} runs of each variant: all its tables and figures, the same on worlds "
+      "whose "
       "straight line is blocked, and hypervolume during the search. Of {} statements of the paper that were checked, "
       "these runs agree with {}, do not agree with {}, and show neither for {}{}.",
       s.settings().runs, parts.claims.size(), count(Outcome::kBetter), count(Outcome::kWorse),
@@ -181,7 +189,8 @@ std::vector<std::string> abstract_of(const Selection& s, const ReportParts& part
 void harder_worlds(Sections& out) {
   out.begin("The same where the straight line is blocked");
   out.text(
-      "Here a path may fail: problem (16) is solved waypoint by waypoint, and a step may end where no next one is free. "
+      "Here a path may fail: problem (16) is solved waypoint by waypoint, and a step may end where no next one is "
+      "free. "
       "Lengths and flight times are of the paths that reach; how many do stands beside them.");
   out.begin("Fronts", 2);
   out.tables({"table03", "table04", "table05"}, true);
@@ -205,11 +214,13 @@ std::string extent_sentence(const Selection& s) {
   whole.shard = {};
   const std::size_t all = variants_of(whole).size() * static_cast<std::size_t>(whole.runs);
   const std::size_t done = s.results().runs.size();
-  const std::string quick = s.settings().quick ? " This is a quick study: few runs, and Tables 13 and 14 without their largest "
-                                                 "cells. Take its numbers as a first look."
-                                               : "";
+  const std::string quick = s.settings().quick
+                                ? " This is a quick study: few runs, and Tables 13 and 14 without their largest "
+                                  "cells. Take its numbers as a first look."
+                                : "";
   if (done == all) return fmt::format("{} runs of {} variants, all there.{}", all, variants_of(whole).size(), quick);
-  return fmt::format("**Incomplete:** {} of {} runs are there; what is missing is \"-\" in the tables.{}", done, all, quick);
+  return fmt::format("**Incomplete:** {} of {} runs are there; what is missing is \"-\" in the tables.{}", done, all,
+                     quick);
 }
 
 Report study_report(const Selection& s, const Setting& setting, const ReportParts& parts) {

@@ -18,8 +18,7 @@ void add_line(const Json& line, const Expected& expected, Results& results) {
   if (type != "run") throw std::runtime_error("neither a run nor a machine");
   Record record = record_from(line);
   const auto found = expected.find(record.job.number);
-  if (found == expected.end())
-    throw std::runtime_error(fmt::format("run {} is not of this study", record.job.number));
+  if (found == expected.end()) throw std::runtime_error(fmt::format("run {} is not of this study", record.job.number));
   const Job& job = found->second;
   if (job.variant != record.job.variant || job.run != record.job.run || job.seed != record.job.seed)
     throw std::runtime_error(fmt::format("run {} should be {} with seed {}", job.number, job.name(), job.seed));
@@ -68,8 +67,7 @@ Results merge_results(const std::vector<std::filesystem::path>& folders) {
     Results part = read_results(results_path(folder));
     part.settings.shard = {};
     if (&folder == &folders.front()) merged.settings = part.settings;
-    const auto differ =
-        differences(merged.settings, folders.front().string(), part.settings, folder.string());
+    const auto differ = differences(merged.settings, folders.front().string(), part.settings, folder.string());
     if (!differ.empty()) throw ResultsError(fmt::format("these are two studies: {}", differ.front()));
     try {
       for (auto& [number, record] : part.runs) merged.add(std::move(record));

@@ -74,7 +74,7 @@ void make_front(const Job& job, const Setting& setting, planner::WorkerPool& poo
 
 void make_path(const Job& job, const Setting& setting, planner::WorkerPool& pool, Record& record) {
   const World world = setting.scenes.world(job.variant.world, job.run);
-  const planner::PaperRequest request{world.start,  world.target,         world.volume,          world.vehicle,
+  const planner::PaperRequest request{world.start,  world.target,        world.volume,          world.vehicle,
                                       world.tracks, sizes(job, setting), setting.planner.paper, job.seed};
   const auto begun = Clock::now();
   const auto optimizer = make_optimizer(job, setting);
@@ -137,9 +137,15 @@ Record make_run(const Job& job, const Setting& setting, planner::WorkerPool& poo
   record.job = job;
   record.measured[key::kThreads] = pool.threads();
   switch (job.variant.kind) {
-    case RunKind::kFront: make_front(job, setting, pool, record); break;
-    case RunKind::kPath: make_path(job, setting, pool, record); break;
-    case RunKind::kAnytime: make_anytime(job, setting, pool, record); break;
+    case RunKind::kFront:
+      make_front(job, setting, pool, record);
+      break;
+    case RunKind::kPath:
+      make_path(job, setting, pool, record);
+      break;
+    case RunKind::kAnytime:
+      make_anytime(job, setting, pool, record);
+      break;
   }
   return record;
 }

@@ -20,13 +20,13 @@ using planner::Vec3;
 
 constexpr int kNumbered = 5;
 constexpr int kPictured = 3;
-constexpr double kRadius = 0.5;        // m, of an obstacle, as in the paper's scenarios here
-constexpr double kFirst = 0.15;        // where along the line the meetings begin, and how much of it they fill
+constexpr double kRadius = 0.5;  // m, of an obstacle, as in the paper's scenarios here
+constexpr double kFirst = 0.15;  // where along the line the meetings begin, and how much of it they fill
 constexpr double kFilled = 0.7;
-constexpr double kThrough = 0.3;       // m, from the line at most, of those that block it
-constexpr double kBesideLeast = 1.0;   // m, of the others
+constexpr double kThrough = 0.3;      // m, from the line at most, of those that block it
+constexpr double kBesideLeast = 1.0;  // m, of the others
 constexpr double kBesideMost = 2.5;
-constexpr double kSlowest = 0.5;       // m/s
+constexpr double kSlowest = 0.5;  // m/s
 constexpr double kFastest = 3.0;
 constexpr double kClearOfStart = 1.0;  // m, between surfaces
 constexpr double kClearOfTarget = 0.5;
@@ -88,8 +88,7 @@ config::Scenario blocked_scenario(const config::Scenario& base, std::uint64_t se
   const auto count = base.obstacles.size();
   while (scenario.obstacles.size() < count) {
     const std::size_t i = scenario.obstacles.size();
-    const double share =
-        kFirst + kFilled * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
+    const double share = kFirst + kFilled * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
     const bool through = i % 2 == 0;
     const double distance = through ? random.uniform(0.0, kThrough) : random.uniform(kBesideLeast, kBesideMost);
     const auto turn = planner::sine_cosine(random.uniform(0.0, std::numbers::pi));  // the ground is below

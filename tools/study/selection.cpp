@@ -14,8 +14,8 @@ Selection::Selection(const Results& results) : results_(results), sizes_(sizes_o
 
 Records Selection::find(RunKind kind, std::string_view algorithm, std::string_view world, int sharing, int population,
                         int iterations) const {
-  const Variant variant{kind,       std::string(algorithm), std::string(world), has_slaves(algorithm) ? sharing : 0,
-                        population, iterations};
+  const Variant variant{
+      kind, std::string(algorithm), std::string(world), has_slaves(algorithm) ? sharing : 0, population, iterations};
   const auto found = records_.find(variant);
   return found == records_.end() ? Records() : found->second;
 }

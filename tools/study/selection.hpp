@@ -29,8 +29,7 @@ class Selection {
   /// With the paper's sizes and sharing rate.
   [[nodiscard]] Records paths(std::string_view algorithm, std::string_view world) const;
   [[nodiscard]] Records paths(std::string_view algorithm, std::string_view world, int sharing) const;
-  [[nodiscard]] Records paths(std::string_view algorithm, std::string_view world, int population,
-                              int iterations) const;
+  [[nodiscard]] Records paths(std::string_view algorithm, std::string_view world, int population, int iterations) const;
   [[nodiscard]] Records fronts(std::string_view algorithm, std::string_view world, int sharing) const;
   [[nodiscard]] Records anytime(std::string_view algorithm, std::string_view world) const;
 

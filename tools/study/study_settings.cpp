@@ -49,8 +49,12 @@ class VariantList {
 
   void add(RunKind kind, const std::string& algorithm, const std::string& world, int sharing, int times_population = 1,
            int times_iterations = 1) {
-    Variant variant{kind,    algorithm, world, has_slaves(algorithm) ? sharing : 0, sizes_.population * times_population,
-              sizes_.iterations * times_iterations};
+    Variant variant{kind,
+                    algorithm,
+                    world,
+                    has_slaves(algorithm) ? sharing : 0,
+                    sizes_.population * times_population,
+                    sizes_.iterations * times_iterations};
     if (known_.insert(variant).second) variants_.push_back(std::move(variant));
   }
   void add(RunKind kind, const std::string& algorithm, const std::string& world) {
@@ -68,9 +72,12 @@ class VariantList {
 
 std::string_view to_string(RunKind kind) {
   switch (kind) {
-    case RunKind::kFront: return "front";
-    case RunKind::kPath: return "path";
-    case RunKind::kAnytime: return "anytime";
+    case RunKind::kFront:
+      return "front";
+    case RunKind::kPath:
+      return "path";
+    case RunKind::kAnytime:
+      return "anytime";
   }
   return "";
 }
@@ -80,8 +87,8 @@ bool Variant::timed() const {
 }
 
 std::string Job::name() const {
-  return fmt::format("{} {} {} l={} {}x{} run {}", to_string(variant.kind), variant.algorithm, variant.world, variant.sharing,
-                     variant.population, variant.iterations, run + 1);
+  return fmt::format("{} {} {} l={} {}x{} run {}", to_string(variant.kind), variant.algorithm, variant.world,
+                     variant.sharing, variant.population, variant.iterations, run + 1);
 }
 
 PaperSizes sizes_of(const StudySettings& settings) {
@@ -131,7 +138,8 @@ std::vector<Variant> variants_of(const StudySettings& settings) {
       for (const int sharing : rates_of(algorithm)) variants.add(RunKind::kFront, algorithm, world, sharing);
   }
   for (const bool blocked : {false, true})
-    for (const std::string& world : pictured_worlds(blocked)) variants.add(RunKind::kPath, std::string(kRetained), world);
+    for (const std::string& world : pictured_worlds(blocked))
+      variants.add(RunKind::kPath, std::string(kRetained), world);
   for (const bool blocked : {false, true}) {
     for (const std::string& world : numbered_worlds(blocked))
       for (const std::string& algorithm : own) variants.add(RunKind::kPath, algorithm, world);
@@ -140,12 +148,14 @@ std::vector<Variant> variants_of(const StudySettings& settings) {
     for (const int iterations : iteration_factors(settings))
       for (const int population : population_factors(settings))
         for (const std::string& algorithm : own)
-          variants.add(RunKind::kPath, algorithm, hardest_world(blocked), sizes_of(settings).sharing, population, iterations);
+          variants.add(RunKind::kPath, algorithm, hardest_world(blocked), sizes_of(settings).sharing, population,
+                       iterations);
     for (const Algorithm& algorithm : algorithms())
       variants.add(RunKind::kAnytime, std::string(algorithm.name), hardest_world(blocked));
   }
   for (const std::string& algorithm : own)
-    for (const int sharing : rates_of(algorithm)) variants.add(RunKind::kPath, algorithm, hardest_world(false), sharing);
+    for (const int sharing : rates_of(algorithm))
+      variants.add(RunKind::kPath, algorithm, hardest_world(false), sharing);
   return variants.take();
 }
 
@@ -173,9 +183,9 @@ std::vector<Job> jobs_of(const StudySettings& settings) {
 Json to_header(const StudySettings& s) {
   Json parameters = Json::object();
   for (const config::SettingText& one : s.parameters) parameters[one.key] = one.value;
-  return {{"type", "header"}, {"format", kFormat},       {"version", s.version},   {"seed", s.seed},
-          {"runs", s.runs},   {"quick", s.quick},        {"shard", s.shard.number}, {"shards", s.shard.of},
-          {"parameters", parameters}};
+  return {{"type", "header"},        {"format", kFormat},    {"version", s.version},
+          {"seed", s.seed},          {"runs", s.runs},       {"quick", s.quick},
+          {"shard", s.shard.number}, {"shards", s.shard.of}, {"parameters", parameters}};
 }
 
 StudySettings from_header(const Json& header) {

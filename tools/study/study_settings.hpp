@@ -87,8 +87,8 @@ inline constexpr std::string_view kRetained = "pmomvo-6";
 /// The seed of run number `run`, the same for every variant, so that runs can be compared in pairs.
 [[nodiscard]] std::uint64_t run_seed(std::uint64_t seed, int run);
 
-/// The shard's runs: those that are not timed, then the timed ones, each run by run through all variants, so that a study
-/// that is cut short knows something of each.
+/// The shard's runs: those that are not timed, then the timed ones, each run by run through all variants, so that a
+/// study that is cut short knows something of each.
 [[nodiscard]] std::vector<Job> jobs_of(const StudySettings& settings);
 
 /// The first line of the results file. from_header() throws std::runtime_error for anything that to_header() did not

@@ -7,6 +7,7 @@
 
 #include "tools/study/presentation/statistics.hpp"
 #include "tools/study/presentation/table.hpp"
+#include "tools/study/scenes.hpp"
 #include "tools/study/selection.hpp"
 
 namespace jink::study {

@@ -23,10 +23,10 @@ struct Measure {
   int decimals;
 };
 
-constexpr std::array<Measure, 3> kMeasures{{{"table03", key::kHv, "hypervolume (HV)", Direction::kLargerIsBetter, 4},
-                                            {"table04", key::kMs, "maximum spread (MS)", Direction::kLargerIsBetter, 4},
-                                            {"table05", key::kHrs, "hole relative size (HRS)",
-                                             Direction::kSmallerIsBetter, 4}}};
+constexpr std::array<Measure, 3> kMeasures{
+    {{"table03", key::kHv, "hypervolume (HV)", Direction::kLargerIsBetter, 4},
+     {"table04", key::kMs, "maximum spread (MS)", Direction::kLargerIsBetter, 4},
+     {"table05", key::kHrs, "hole relative size (HRS)", Direction::kSmallerIsBetter, 4}}};
 
 Table front_table(const Selection& selection, const Measure& m, bool blocked) {
   Table table;
@@ -100,18 +100,20 @@ std::string timing_note(const Selection& selection) {
   std::string counts;
   for (const int count : threads) counts += fmt::format("{}{}", counts.empty() ? "" : " and ", count);
   const std::size_t machines = selection.results().machines.size();
-  return fmt::format("Wall time with {} thread{} of the planner, each run alone on the machine{}.", counts,
-                     threads.size() == 1 && *threads.begin() == 1 ? "" : "s",
-                     machines > 1 || threads.size() > 1 ? "; times of several machines or thread counts are mixed" : "");
+  return fmt::format(
+      "Wall time with {} thread{} of the planner, each run alone on the machine{}.", counts,
+      threads.size() == 1 && *threads.begin() == 1 ? "" : "s",
+      machines > 1 || threads.size() > 1 ? "; times of several machines or thread counts are mixed" : "");
 }
 
 Table anytime_table(const Selection& selection, bool blocked) {
   Table table;
   table.id = table_id("anytime", blocked);
-  table.title = fmt::format("Mean hypervolume after a share of the {} evaluations, with half the width of its 95 % "
-                            "interval, at {} steps of {}",
-                            selection.sizes().population * selection.sizes().iterations, kFrontSteps,
-                            blocked ? "a blocked world" : "scenario 5");
+  table.title = fmt::format(
+      "Mean hypervolume after a share of the {} evaluations, with half the width of its 95 % "
+      "interval, at {} steps of {}",
+      selection.sizes().population * selection.sizes().iterations, kFrontSteps,
+      blocked ? "a blocked world" : "scenario 5");
   table.columns = {"Algorithm"};
   const std::vector<double> shares = checkpoints();
   for (const double share : shares) table.columns.push_back(fmt::format("{:g} %", 100.0 * share));

@@ -51,7 +51,7 @@ void add_reached(Table& table, const Selection& selection, bool blocked) {
     for (const std::string& world : numbered_worlds(blocked)) {
       const Records all = selection.paths(algorithm, world);
       const std::size_t count = reached(all).size();
-      Cell cell{fmt::format("{}/{}", count, all.size())};
+      Cell cell = label(fmt::format("{}/{}", count, all.size()));
       if (!all.empty()) cell.value = static_cast<double>(count) / static_cast<double>(all.size());
       row.push_back(std::move(cell));
     }
@@ -91,7 +91,8 @@ Table planning_table(const Selection& selection, bool blocked) {
 }
 
 Table flight_table(const Selection& selection, bool blocked) {
-  Table table = world_table("table07-flight", blocked, "Flight time (s) of the planned paths in " + worlds_text(blocked));
+  Table table =
+      world_table("table07-flight", blocked, "Flight time (s) of the planned paths in " + worlds_text(blocked));
   add_statistics(table, "", 4, blocked, [&](const std::string& algorithm, const std::string& world) {
     return values(reached(selection.paths(algorithm, world)), key::kFlight);
   });
@@ -130,7 +131,8 @@ void add_friedman(Table& table, const Scores& ranks, const char* id, bool blocke
   const Friedman f = friedman(ranks);
   const std::string printed = paper_text(blocked, id, "all", "all", "Iman-Davenport F");
   table.notes.push_back(fmt::format(
-      "Friedman: chi-square {:.3f}, {}; Iman and Davenport: F = {:.3f}{}, {}, critical {:.4f} at 5 %: the algorithms {}.",
+      "Friedman: chi-square {:.3f}, {}; Iman and Davenport: F = {:.3f}{}, {}, critical {:.4f} at 5 %: the algorithms "
+      "{}.",
       f.chi_square, p_text(f.p), f.iman_davenport, printed.empty() ? "" : fmt::format(" (the paper: {})", printed),
       p_text(f.iman_p), f.critical_f, f.rejected ? "differ" : "are not shown to differ"));
 }
@@ -144,8 +146,7 @@ Table matrix_table(const Lsd& lsd, const char* id, const char* what, bool blocke
                             worlds_text(blocked));
   table.columns = {""};
   for (std::size_t b = 1; b < own.size(); ++b) table.columns.push_back(label_of(own[b]));
-  for (std::size_t a = 0; a + 1 < own.size(); ++a)
-    table.rows.emplace_back(1, label(label_of(own[a])));
+  for (std::size_t a = 0; a + 1 < own.size(); ++a) table.rows.emplace_back(1, label(label_of(own[a])));
   for (auto& row : table.rows) row.resize(own.size(), label(""));
   for (const Comparison& pair : lsd.pairs) {
     const auto a = static_cast<std::size_t>(pair.a);
@@ -160,9 +161,11 @@ Table matrix_table(const Lsd& lsd, const char* id, const char* what, bool blocke
   const auto kept = std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const Comparison& c) { return c.holm; });
   const auto found = std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const Comparison& c) { return c.lsd; });
   table.notes.push_back(fmt::format(
-      "Bold: more than the least significant difference {:.4f}{}, as the paper has it, one-sided; two-sided it is {:.4f}.",
+      "Bold: more than the least significant difference {:.4f}{}, as the paper has it, one-sided; two-sided it is "
+      "{:.4f}.",
       lsd.critical, printed.empty() ? "" : fmt::format(" (the paper: {})", printed), lsd.critical_two_sided));
-  table.notes.push_back(fmt::format("{} of {} pairs differ so; with Holm's correction {} do.", found, lsd.pairs.size(), kept));
+  table.notes.push_back(
+      fmt::format("{} of {} pairs differ so; with Holm's correction {} do.", found, lsd.pairs.size(), kept));
   return table;
 }
 
@@ -170,7 +173,8 @@ Table pairs_table(const Lsd& lsd, const char* id, const char* what, bool blocked
   const std::vector<std::string> own = own_algorithms();
   Table table;
   table.id = table_id(id, blocked);
-  table.title = fmt::format("Paired comparison by {} in {}: p-values and Holm's correction", what, worlds_text(blocked));
+  table.title =
+      fmt::format("Paired comparison by {} in {}: p-values and Holm's correction", what, worlds_text(blocked));
   table.columns = {"Algorithm", "Against", "Difference of rank sums", "p", "p (Holm)"};
   table.label_columns = 2;
   for (const Comparison& pair : lsd.pairs) {

@@ -14,7 +14,8 @@ std::string world_text(bool blocked) {
   return blocked ? "blocked worlds of scenario 5's size" : "scenario 5";
 }
 
-std::string vectors(const config::Scenario& scenario, const std::function<planner::Vec3(const config::LinearMotion&)>& of) {
+std::string vectors(const config::Scenario& scenario,
+                    const std::function<planner::Vec3(const config::LinearMotion&)>& of) {
   std::vector<std::string> texts;
   for (const config::Obstacle& obstacle : scenario.obstacles) {
     const auto* const motion = std::get_if<config::LinearMotion>(&obstacle.motion);
@@ -44,8 +45,8 @@ Table sensitivity_table(const Selection& selection, const char* id, std::string 
       const int population = p * selection.sizes().population;
       std::vector<Cell> row{label(std::to_string(iterations)), label(std::to_string(population))};
       for (const std::string& algorithm : own_algorithms()) {
-        const std::string printed =
-            paper_text(blocked, id, fmt::format("{}/{}", iterations, population), label_of(algorithm), statistic_of_paper);
+        const std::string printed = paper_text(blocked, id, fmt::format("{}/{}", iterations, population),
+                                               label_of(algorithm), statistic_of_paper);
         const Records records = selection.paths(algorithm, hardest_world(blocked), population, iterations);
         row.push_back(records.empty() ? nothing(printed) : number(of(records), decimals, printed));
       }
@@ -71,10 +72,10 @@ struct Criterion15 {
 };
 
 std::vector<Criterion15> criteria_of_comparison() {
-  return {{"Path length (m)", "SLR", 4, [](const Records& all) { return values(reached(all), key::kLength); }},
-          {"Planning time (ms)", "FT", 3,
-           [](const Records& all) { return scaled(measured(all, key::kPlanning), 1000.0); }},
-          {"Flight time (s)", "", 4, [](const Records& all) { return values(reached(all), key::kFlight); }}};
+  return {
+      {"Path length (m)", "SLR", 4, [](const Records& all) { return values(reached(all), key::kLength); }},
+      {"Planning time (ms)", "FT", 3, [](const Records& all) { return scaled(measured(all, key::kPlanning), 1000.0); }},
+      {"Flight time (s)", "", 4, [](const Records& all) { return values(reached(all), key::kFlight); }}};
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ Table picture_table(const Selection& selection, const Scenes& scenes, bool block
   table.id = table_id("table12", blocked);
   table.title = fmt::format("{} for the illustration of obstacle avoidance, and paths of {} in them",
                             blocked ? "Blocked worlds" : "Scenarios", label_of(kRetained));
-  table.columns = {"Instance", "Start",        "Target",    "Obstacles' positions (m)", "Obstacles' velocities (m/s)",
+  table.columns = {"Instance", "Start",     "Target",     "Obstacles' positions (m)", "Obstacles' velocities (m/s)",
                    "Reached",  "SLR, mean", "SLR, worst", "Smallest clearance (m)"};
   for (const std::string& world : pictured_worlds(blocked)) {
     const config::Scenario scenario = scenes.scenario(world, 0);
@@ -92,13 +93,13 @@ Table picture_table(const Selection& selection, const Scenes& scenes, bool block
     const Records free = reached(all);
     const std::vector<double> slr = values(free, key::kSlr);
     const std::vector<double> clearance = values(free, key::kClearance);
-    table.rows.push_back(
-        {label(world_number(world)), label(point(scenario.start)), label(point(scenario.target)),
-         label(vectors(scenario, [](const config::LinearMotion& m) { return m.position; })),
-         label(vectors(scenario, [](const config::LinearMotion& m) { return m.velocity; })),
-         label(fmt::format("{}/{}", free.size(), all.size())), free.empty() ? nothing() : number(mean(slr), 6),
-         free.empty() ? nothing() : number(*std::max_element(slr.begin(), slr.end()), 6),
-         free.empty() ? nothing() : number(*std::min_element(clearance.begin(), clearance.end()), 3)});
+    table.rows.push_back({label(world_number(world)), label(point(scenario.start)), label(point(scenario.target)),
+                          label(vectors(scenario, [](const config::LinearMotion& m) { return m.position; })),
+                          label(vectors(scenario, [](const config::LinearMotion& m) { return m.velocity; })),
+                          label(fmt::format("{}/{}", free.size(), all.size())),
+                          free.empty() ? nothing() : number(mean(slr), 6),
+                          free.empty() ? nothing() : number(*std::max_element(slr.begin(), slr.end()), 6),
+                          free.empty() ? nothing() : number(*std::min_element(clearance.begin(), clearance.end()), 3)});
   }
   table.notes.push_back("All obstacles are spheres of 0.5 m radius; the paper does not say how large they are.");
   if (blocked) table.notes.push_back("Unlike the other blocked worlds these three are the same in every run.");
@@ -106,14 +107,13 @@ Table picture_table(const Selection& selection, const Scenes& scenes, bool block
 }
 
 std::vector<Table> sensitivity_tables(const Selection& selection, bool blocked) {
-  Table length = sensitivity_table(selection, "table13", "Mean path length (m) over iterations and population in " + world_text(blocked),
-                                   6, blocked, "length (m)", [](const Records& all) {
-                                     return mean(values(reached(all), key::kLength));
-                                   });
+  Table length = sensitivity_table(
+      selection, "table13", "Mean path length (m) over iterations and population in " + world_text(blocked), 6, blocked,
+      "length (m)", [](const Records& all) { return mean(values(reached(all), key::kLength)); });
   length.notes.push_back("Of the paths that reach.");
-  Table time = sensitivity_table(selection, "table14", "Mean planning time (ms) over iterations and population in " + world_text(blocked),
-                                 3, blocked, "time (s)",
-                                 [](const Records& all) { return 1000.0 * mean(measured(all, key::kPlanning)); });
+  Table time = sensitivity_table(
+      selection, "table14", "Mean planning time (ms) over iterations and population in " + world_text(blocked), 3,
+      blocked, "time (s)", [](const Records& all) { return 1000.0 * mean(measured(all, key::kPlanning)); });
   time.notes.push_back(timing_note(selection));
   std::vector<Table> tables{std::move(length)};
   if (blocked) tables.push_back(reached_table(selection));
@@ -141,8 +141,9 @@ Table comparison_table(const Selection& selection, bool blocked) {
         const std::string printed =
             *c.paper_column == '\0' ? "" : paper_text(blocked, "table15", label_of(algorithm), c.paper_column, which);
         const std::vector<double> sample = c.sample(all);
-        row.push_back(sample.empty() ? nothing(printed)
-                                     : number(statistic(sample, which, Direction::kSmallerIsBetter), c.decimals, printed));
+        row.push_back(sample.empty()
+                          ? nothing(printed)
+                          : number(statistic(sample, which, Direction::kSmallerIsBetter), c.decimals, printed));
       }
       row.push_back(label(which == "Mean" ? fmt::format("{}/{}", reached(all).size(), all.size()) : ""));
       table.rows.push_back(std::move(row));

@@ -53,10 +53,14 @@ std::vector<std::string> subjects(const std::vector<Verdict>& verdicts, Outcome 
 
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::kBetter: return "better";
-    case Outcome::kWorse: return "worse";
-    case Outcome::kNoDifference: return "no difference shown";
-    case Outcome::kUnknown: break;
+    case Outcome::kBetter:
+      return "better";
+    case Outcome::kWorse:
+      return "worse";
+    case Outcome::kNoDifference:
+      return "no difference shown";
+    case Outcome::kUnknown:
+      break;
   }
   return "unknown";
 }
@@ -100,9 +104,10 @@ std::vector<Verdict> compare(const Selection& s, std::string_view other) {
 Table verdict_table(const Selection& selection) {
   Table table;
   table.id = "verdicts";
-  table.title = fmt::format("{} minus each other algorithm: mean of paired differences with 95 % intervals; smaller is "
-                            "better for {}",
-                            label_of(kRetained), label_of(kRetained));
+  table.title = fmt::format(
+      "{} minus each other algorithm: mean of paired differences with 95 % intervals; smaller is "
+      "better for {}",
+      label_of(kRetained), label_of(kRetained));
   table.columns = {"Against"};
   const std::vector<Respect> all = respects();
   for (const Respect& respect : all) table.columns.push_back(respect.name);
@@ -125,8 +130,9 @@ Table verdict_table(const Selection& selection) {
     }
     table.rows.push_back(std::move(row));
   }
-  table.notes.push_back("Bold: the other one is better. Intervals are each for itself, without a correction for their "
-                        "number.");
+  table.notes.push_back(
+      "Bold: the other one is better. Intervals are each for itself, without a correction for their "
+      "number.");
   table.notes.push_back(timing_note(selection));
   return table;
 }

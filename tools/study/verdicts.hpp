@@ -46,8 +46,8 @@ struct Respect {
 
 /// A claim of the paper and what these runs say of it.
 struct Claim {
-  std::string claim;    ///< in our words, with where it is made
-  std::string finding;  ///< with the numbers
+  std::string claim;                    ///< in our words, with where it is made
+  std::string finding;                  ///< with the numbers
   Outcome outcome = Outcome::kUnknown;  ///< better: the runs agree; worse: they contradict; no difference: neither
 };
 [[nodiscard]] std::vector<Claim> judge_claims(const Selection& selection);
