@@ -17,7 +17,7 @@ namespace jink::study {
 ///   table08, table09 all                        all                     Iman-Davenport F, critical F
 ///   table10, table11 algorithm                  algorithm               difference, underlined ("yes", "no")
 ///   table10, table11 all                        all                     critical difference
-///   table13, table14 "ITERATIONS/POPULATION"    algorithm               length (m), time (s)
+///   table13, table14 "ITERATIONS/POPULATION"    algorithm               length (in m) or time (in s)
 ///   table15          algorithm                  SLR, FT                 Best, Mean, Worst, STD
 struct PaperNumber {
   std::string_view table;
