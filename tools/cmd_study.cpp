@@ -2,6 +2,7 @@
 // jink study: the paper's experiments, all of them, and what they amount to.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tools/campaign/options.hpp"
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr int kRuns = 20;  // [Paper] section 5.2
 constexpr int kQuickRuns = 5;
+constexpr std::size_t kToldVerdicts = 2;  // on the terminal: against NSGA-II and MOEA/D
 
 constexpr const char* kFooter =
     "Writes into --out: runs.jsonl (a line for each run as it ends), tableNN.csv, .md and .tex, figureNN.png, .svg, "
@@ -58,8 +60,9 @@ void conclude(const study::Results& results, const study::Setting& setting, cons
   printer.line(fmt::format("{} runs; writing tables, figures and report", results.runs.size()));
   const nlohmann::ordered_json summary =
       study::write_study(results, setting, options.out, options.common.thread_count());
-  for (const auto& sentence : summary.at("verdicts")) {
-    std::string text = sentence.get<std::string>();
+  const auto& verdicts = summary.at("verdicts");
+  for (std::size_t i = 0; i < std::min(kToldVerdicts, verdicts.size()); ++i) {
+    std::string text = verdicts[i].get<std::string>();
     for (auto at = text.find("**"); at != std::string::npos; at = text.find("**")) text.erase(at, 2);
     printer.line("  " + text);
   }

@@ -51,7 +51,8 @@ TEST(BlockedWorlds, LeaveStartAndArrivalFree) {
     const double end = straight_flight(world).back().t;
     for (const planner::Track& track : world.tracks) {
       EXPECT_GT((track.position - world.start).norm(), track.radius + world.vehicle.radius + 1.0);
-      EXPECT_GT((planner::predict_position(track, end) - world.target).norm(), track.radius + world.vehicle.radius + 0.5);
+      EXPECT_GT((planner::predict_position(track, end) - world.target).norm(),
+                track.radius + world.vehicle.radius + 0.5);
     }
   }
 }
@@ -116,7 +117,7 @@ TEST(FrontSteps, HaveFrontsThatNoRandomPointBeats) {
       EXPECT_GT(bounds.nadir[0] - bounds.ideal[0], 0.01) << "a front, not a point";
       EXPECT_GT(bounds.nadir[1] - bounds.ideal[1], 0.1);
       planner::RandomStream random(7, static_cast<std::uint64_t>(step.station));
-      std::vector<planner::Point2> with = step.reference.points;
+      std::vector<planner::Point2> with = step.reference.points;  // fewer than the hypervolume counts
       for (int i = 0; i < 20000; ++i) {
         const std::array<double, 2> x{random.uniform(step.problem.lower()[0], step.problem.upper()[0]),
                                       random.uniform(step.problem.lower()[1], step.problem.upper()[1])};
@@ -124,7 +125,7 @@ TEST(FrontSteps, HaveFrontsThatNoRandomPointBeats) {
         step.problem.evaluate(x, {&cost, 1});
         with.push_back({cost.f[0], cost.f[1]});
       }
-      EXPECT_LT(indicators(with, step.reference).hv, step.reference.hypervolume + 2e-3) << step.station;
+      EXPECT_LT(indicators(with, step.reference).hv, step.reference.hypervolume + 1e-4) << step.station;
     }
     EXPECT_EQ(hits, blocked ? kFrontSteps : 0U);
   }

@@ -16,8 +16,8 @@ using tools::Folder;
 /// One run of everything, whose times are taken out.
 class StudyCampaign : public ::testing::Test {
  protected:
-  static Results made(const std::filesystem::path& folder, int threads, Results results, const std::function<bool()>& interrupted,
-                      bool& complete) {
+  static Results made(const std::filesystem::path& folder, int threads, Results results,
+                      const std::function<bool()>& interrupted, bool& complete) {
     const Setting setting(results.settings, small_planner());
     std::filesystem::create_directories(folder);
     campaign::LineFile file(results_path(folder), to_header(results.settings));
@@ -52,7 +52,8 @@ TEST_F(StudyCampaign, GivesTheSameForAnyNumberOfThreadsAndAfterAnInterruption) {
   EXPECT_TRUE(same(made(three, 3, begun(), never, complete), whole));
 
   std::atomic<int> asked{0};
-  const Results part = made(cut, 2, begun(), [&] { return ++asked > 100; }, complete);
+  const Results part = made(
+      cut, 2, begun(), [&] { return ++asked > 100; }, complete);
   EXPECT_FALSE(complete);
   EXPECT_GT(part.runs.size(), 0U);
   EXPECT_LT(part.runs.size(), whole.runs.size());
@@ -68,8 +69,12 @@ TEST(Runs, SpendWhatTheyAreAllowedAndSayHowTheFrontGrew) {
     const Record r = make_run(job, setting, pool);
     const double search = job.variant.population * job.variant.iterations;
     switch (job.variant.kind) {
-      case RunKind::kFront: EXPECT_EQ(r.value(key::kEvaluations), search * kFrontSteps) << job.name(); break;
-      case RunKind::kPath: EXPECT_EQ(r.value(key::kEvaluations), search * 4) << job.name(); break;
+      case RunKind::kFront:
+        EXPECT_EQ(r.value(key::kEvaluations), search * kFrontSteps) << job.name();
+        break;
+      case RunKind::kPath:
+        EXPECT_EQ(r.value(key::kEvaluations), search * 4) << job.name();
+        break;
       case RunKind::kAnytime:
         EXPECT_EQ(r.series.at(key::kEvaluationsAt).front(), job.variant.population) << job.name();
         EXPECT_EQ(r.series.at(key::kEvaluationsAt).back(), search) << job.name();

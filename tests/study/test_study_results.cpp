@@ -97,7 +97,9 @@ TEST(StudyResults, OfShardsMergeToTheWholeAndOnesThatContradictAreRefused) {
   Results wrong = whole;
   wrong.runs.begin()->second.values[key::kHv] = 2.0;
   write(results_path(folder.path() / "wrong"), to_text(wrong));
-  EXPECT_TRUE(has(refusal([&] { static_cast<void>(merge_results({folder.path() / "1", folder.path() / "wrong"})); }),
+  EXPECT_TRUE(has(refusal([&] {
+                    static_cast<void>(merge_results({folder.path() / "1", folder.path() / "wrong"}));
+                  }),
                   "has two different results"));
   Results timed_again = whole;
   timed_again.runs.begin()->second.measured[key::kThreads] = 9.0;
@@ -106,7 +108,9 @@ TEST(StudyResults, OfShardsMergeToTheWholeAndOnesThatContradictAreRefused) {
   settings.shard = {};
   settings.seed = 2;
   write(results_path(folder.path() / "other"), to_text(empty_results(settings)));
-  EXPECT_TRUE(has(refusal([&] { static_cast<void>(merge_results({folder.path() / "1", folder.path() / "other"})); }),
+  EXPECT_TRUE(has(refusal([&] {
+                    static_cast<void>(merge_results({folder.path() / "1", folder.path() / "other"}));
+                  }),
                   "seed: 1 in "));
 }
 

@@ -12,6 +12,8 @@ namespace jink::study {
 namespace {
 
 constexpr const char* kTimeLabel = "Planning time (ms)";
+constexpr double kApart = 0.15;      // by which fronts are moved so that they do not cover one another
+constexpr double kLeastLost = 1e-5;  // of hypervolume that a logarithmic axis shows
 
 std::vector<double> planning_ms(const Records& records) {
   return scaled(measured(records, key::kPlanning), 1000.0);
@@ -55,21 +57,25 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
   result.caption = fmt::format(
       "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent, "
       "a "
-      "panel for each sharing rate l; the line is the reference front. MOMVO does not share and is shown at l = 0.",
-      step.station + 1, setting.planner.paper.waypoints, world_text(blocked));
+      "panel for each sharing rate l; the line is the reference front. Each algorithm is moved up by {} so that none "
+      "covers "
+      "another. MOMVO does not share and is shown at l = 0.",
+      step.station + 1, setting.planner.paper.waypoints, world_text(blocked), kApart);
   for (const int l : sharing_rates()) {
     Panel panel;
     panel.title = fmt::format("l = {}", l);
     panel.x_label = "Length f1 (normalised)";
     panel.y_label = "Steering f2 (normalised)";
-    panel.x_range = panel.y_range = {-0.05, 1.1};
+    panel.x_range = {-0.05, 1.1};
+    panel.y_range = {-0.05, 1.1 + kApart * static_cast<double>(own_algorithms().size() - 1)};
     for (const std::string& algorithm : own_algorithms()) {
       const Records records =
           l == 0 || has_slaves(algorithm) ? selection.fronts(algorithm, hardest_world(blocked), l) : Records();
       if (records.empty()) continue;
       Series series = series_of(algorithm, Kind::points);
       series.x = records.front()->series.at(key::kF1);
-      series.y = records.front()->series.at(key::kF2);
+      for (const double f2 : records.front()->series.at(key::kF2))
+        series.y.push_back(f2 + kApart * place_of(algorithm));
       panel.series.push_back(std::move(series));
     }
     if (panel.series.empty()) continue;
@@ -201,32 +207,41 @@ std::vector<CaptionedFigure> size_figures(const Selection& selection) {
   return figures;
 }
 
-CaptionedFigure anytime_figure(const Selection& selection, bool blocked) {
+CaptionedFigure anytime_figure(const Selection& selection, const Setting& setting, bool blocked) {
   CaptionedFigure result;
   result.figure.id = blocked ? "anytime-blocked" : "anytime";
   result.figure.title = "Hypervolume during the search in " + world_text(blocked);
+  double best = 0.0;
+  const std::vector<FrontStep>& steps = setting.steps_of(hardest_world(blocked));
+  for (const FrontStep& step : steps) best += step.reference.hypervolume / static_cast<double>(steps.size());
   result.caption = fmt::format(
-      "Mean hypervolume of the front over evaluations and over wall time with 95 % intervals at {} steps of {}. {}",
-      kFrontSteps, world_text(blocked), timing_note(selection));
+      "Mean hypervolume that the front lacks to the reference fronts' {:.4f}, over evaluations and over wall time, "
+      "with "
+      "95 % intervals, at {} steps of {}; lower is better. All have fronts of at most {} members, so that something "
+      "always lacks. {}",
+      best, steps.size(), world_text(blocked), setting.planner.optimizer.archive, timing_note(selection));
   Panel by_evaluations, by_time;
   by_evaluations.x_label = "Evaluations";
   by_time.x_label = "Wall time (ms)";
-  by_evaluations.y_label = by_time.y_label = "Hypervolume";
-  by_evaluations.log_x = by_time.log_x = true;
+  by_evaluations.y_label = by_time.y_label = "Hypervolume lacking";
+  by_evaluations.log_x = by_time.log_x = by_evaluations.log_y = by_time.log_y = true;
   for (const Algorithm& algorithm : algorithms()) {
     const Records records = selection.anytime(algorithm.name, hardest_world(blocked));
     if (records.empty()) continue;
     Series over = series_of(algorithm.name, Kind::band), timed = over;
     const std::size_t count = records.front()->series.at(key::kHvAt).size();
     for (std::size_t i = 0; i < count; ++i) {
-      std::vector<double> hv, at;
+      std::vector<double> lacking, at;
       for (const Record* r : records) {
-        hv.push_back(r->series.at(key::kHvAt).at(i));
+        lacking.push_back(best - r->series.at(key::kHvAt).at(i));
         at.push_back(r->series.at(key::kEvaluationsAt).at(i));
       }
-      add_mean(over, mean(at), hv);
-      add_mean(timed, 1000.0 * mean(measured(records, key::seconds_at(i))), hv);
+      add_mean(over, mean(at), lacking);
+      add_mean(timed, 1000.0 * mean(measured(records, key::seconds_at(i))), lacking);
     }
+    for (Series* series : {&over, &timed})
+      for (std::vector<double>* edge : {&series->y, &series->low, &series->high})
+        for (double& value : *edge) value = std::max(value, kLeastLost);
     by_evaluations.series.push_back(std::move(over));
     by_time.series.push_back(std::move(timed));
   }
@@ -246,9 +261,9 @@ std::vector<CaptionedFigure> all_figures(const Selection& selection, const Setti
   add(time_figures(selection));
   add({comparison_figure(selection)});
   add(size_figures(selection));
-  add({anytime_figure(selection, false), fronts_figure(selection, setting, true)});
+  add({anytime_figure(selection, setting, false), fronts_figure(selection, setting, true)});
   add(picture_figures(selection, setting, true));
-  add({anytime_figure(selection, true)});
+  add({anytime_figure(selection, setting, true)});
   return figures;
 }
 

@@ -30,8 +30,8 @@ struct CaptionedFigure {
 [[nodiscard]] CaptionedFigure comparison_figure(const Selection& selection);
 /// Figures 16 and 17: over population and iterations.
 [[nodiscard]] std::vector<CaptionedFigure> size_figures(const Selection& selection);
-/// "anytime": hypervolume over evaluations and over wall time.
-[[nodiscard]] CaptionedFigure anytime_figure(const Selection& selection, bool blocked);
+/// "anytime": what hypervolume lacks over evaluations and over wall time.
+[[nodiscard]] CaptionedFigure anytime_figure(const Selection& selection, const Setting& setting, bool blocked);
 
 [[nodiscard]] std::vector<CaptionedFigure> all_figures(const Selection& selection, const Setting& setting);
 

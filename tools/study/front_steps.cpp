@@ -20,9 +20,11 @@ using planner::Point2;
 using planner::Vec3;
 
 constexpr int kGrid = 257;  // points along each variable of the first search
-constexpr int kFine = 4;    // finer points to each side of one, in units of a quarter of the spacing
 constexpr int kRefinements = 3;
-constexpr std::size_t kKept = 400;  // points of a front that are searched about, evenly along it
+constexpr int kFiner = 4;                // how much finer each is
+constexpr double kMargin = 0.05;         // of the front's extent, by which what is searched about may be worse at first
+constexpr std::size_t kSearched = 3000;  // points that are searched about
+constexpr std::size_t kKept = 400;       // points of the front
 constexpr Point2 kReferencePoint{1.1, 1.1};
 constexpr double kBeside = 0.8;  // m, where the vehicle is
 constexpr double kAbove = 0.4;
@@ -33,15 +35,38 @@ struct Sample {
   Point2 f{};
 };
 
-/// The non-dominated ones, by the first objective, each f once; thinned out evenly to kKept with both ends.
-std::vector<Sample> non_dominated(std::vector<Sample> samples) {
+void sort_by_first(std::vector<Sample>& samples) {
   std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.f < b.f; });
-  std::vector<Sample> front;
-  for (const Sample& s : samples)
-    if (front.empty() || s.f[1] < front.back().f[1]) front.push_back(s);
-  if (front.size() <= kKept) return front;
+}
+
+/// Every so-manieth, with both ends.
+std::vector<Sample> thinned(std::vector<Sample> samples, std::size_t most) {
+  if (samples.size() <= most) return samples;
   std::vector<Sample> kept;
-  for (std::size_t i = 0; i < kKept; ++i) kept.push_back(front[i * (front.size() - 1) / (kKept - 1)]);
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(samples[i * (samples.size() - 1) / (most - 1)]);
+  return kept;
+}
+
+/// The non-dominated ones of sorted samples, each f once.
+std::vector<Sample> non_dominated(const std::vector<Sample>& sorted) {
+  std::vector<Sample> front;
+  for (const Sample& s : sorted)
+    if (front.empty() || s.f[1] < front.back().f[1]) front.push_back(s);
+  return front;
+}
+
+/// Those of sorted samples that none beats by more than `share` of the front's extent in both objectives. The front
+/// alone would not do: one lucky point of a coarse grid dominates others whose neighbourhood has better ones.
+std::vector<Sample> nearly_non_dominated(const std::vector<Sample>& sorted, double share) {
+  const std::vector<Sample> front = non_dominated(sorted);
+  const Point2 margin{share * (front.back().f[0] - front.front().f[0]),
+                      share * (front.front().f[1] - front.back().f[1])};
+  std::vector<Sample> kept;
+  std::size_t before = 0;  // of the front, those better in the first objective by the margin
+  for (const Sample& s : sorted) {
+    while (before < front.size() && front[before].f[0] <= s.f[0] - margin[0]) ++before;
+    if (before == 0 || front[before - 1].f[1] > s.f[1] - margin[1]) kept.push_back(s);
+  }
   return kept;
 }
 
@@ -129,25 +154,29 @@ ReferenceFront search_reference(const planner::Problem& problem) {
     for (int j = 0; j < kGrid; ++j) x.insert(x.end(), {low[0] + spacing[0] * i, low[1] + spacing[1] * j});
   std::vector<Sample> samples;
   evaluate(problem, x, samples);
-  std::vector<Sample> front = non_dominated(std::move(samples));
+  sort_by_first(samples);
+  double margin = kMargin;
   for (int round = 0; round < kRefinements; ++round) {
-    for (double& h : spacing) h /= kFine;
+    samples = thinned(nearly_non_dominated(samples, margin), kSearched);
+    margin /= kFiner;
+    for (double& h : spacing) h /= kFiner;
     x.clear();
-    for (const Sample& centre : front)
-      for (int i = -kFine; i <= kFine; ++i)
-        for (int j = -kFine; j <= kFine; ++j)
+    for (const Sample& centre : samples)
+      for (int i = -kFiner / 2; i <= kFiner / 2; ++i)
+        for (int j = -kFiner / 2; j <= kFiner / 2; ++j)
           x.insert(x.end(), {std::clamp(centre.x[0] + spacing[0] * i, low[0], high[0]),
                              std::clamp(centre.x[1] + spacing[1] * j, low[1], high[1])});
-    samples = front;
     evaluate(problem, x, samples);
-    front = non_dominated(std::move(samples));
+    sort_by_first(samples);
   }
   ReferenceFront reference;
-  for (const Sample& s : front) reference.points.push_back(s.f);
-  reference.bounds = planner::front_bounds(reference.points);
-  std::vector<Point2> scaled;
-  for (const Point2& p : reference.points) scaled.push_back(normal(p, reference));
-  reference.hypervolume = planner::hypervolume(scaled, kReferencePoint);
+  std::vector<Point2> all;
+  const std::vector<Sample> front = non_dominated(samples);
+  for (const Sample& s : front) all.push_back(s.f);
+  reference.bounds = planner::front_bounds(all);
+  for (Point2& p : all) p = normal(p, reference);
+  reference.hypervolume = planner::hypervolume(all, kReferencePoint);
+  for (const Sample& s : thinned(front, kKept)) reference.points.push_back(s.f);
   return reference;
 }
 

@@ -19,11 +19,11 @@ namespace jink::study {
 struct ReferenceFront {
   std::vector<planner::Point2> points;  ///< by the first objective, at most a few hundred
   planner::FrontBounds bounds;          ///< its ideal and nadir
-  double hypervolume = 0.0;             ///< in units of the bounds, to (1.1, 1.1)
+  double hypervolume = 0.0;             ///< of all that was found, in units of the bounds, to (1.1, 1.1)
 };
 
-/// A grid of 257 x 257 over the box, then three times a finer one about each non-dominated point. Stands in for the
-/// union of all fronts that are compared, which later runs would change. Deterministic.
+/// A grid of 257 x 257 over the box, then three times a finer one about each point that is non-dominated or nearly so.
+/// Stands in for the union of all fronts that are compared, which later runs would change. Deterministic.
 [[nodiscard]] ReferenceFront search_reference(const planner::Problem& problem);
 
 /// What is said of a front, in units of the reference's bounds.

@@ -68,6 +68,10 @@ std::string hardest_world(bool blocked) {
   return numbered_worlds(blocked).back();
 }
 
+bool is_hardest(std::string_view world) {
+  return world == hardest_world(false) || world == hardest_world(true);
+}
+
 std::vector<std::string> pictured_worlds(bool blocked) {
   return names(blocked ? "blocked12" : "table12", kPictured);
 }

@@ -17,6 +17,7 @@ namespace jink::study {
 [[nodiscard]] std::vector<std::string> numbered_worlds(bool blocked);
 /// The fifth of these, which the paper uses wherever it takes one.
 [[nodiscard]] std::string hardest_world(bool blocked);
+[[nodiscard]] bool is_hardest(std::string_view world);
 /// The three worlds of Table 12 and Figures 9-11: "table12-1" ...; blocked: "blocked12-1" ...
 [[nodiscard]] std::vector<std::string> pictured_worlds(bool blocked);
 [[nodiscard]] bool is_pictured(std::string_view world);

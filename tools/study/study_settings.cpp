@@ -83,7 +83,8 @@ std::string_view to_string(RunKind kind) {
 }
 
 bool Variant::timed() const {
-  return kind == RunKind::kAnytime || (kind == RunKind::kPath && !is_pictured(world));
+  if (kind == RunKind::kPath) return !is_pictured(world) && (is_own(algorithm) || is_hardest(world));
+  return kind == RunKind::kAnytime;
 }
 
 std::string Job::name() const {
@@ -143,8 +144,11 @@ std::vector<Variant> variants_of(const StudySettings& settings) {
   for (const bool blocked : {false, true}) {
     for (const std::string& world : numbered_worlds(blocked))
       for (const std::string& algorithm : own) variants.add(RunKind::kPath, algorithm, world);
-    for (const std::string& algorithm : other_algorithms())
+    for (const std::string& algorithm : other_algorithms()) {
       variants.add(RunKind::kPath, algorithm, hardest_world(blocked));
+      if (!blocked) continue;  // elsewhere there is nothing to fail at
+      for (const std::string& world : numbered_worlds(true)) variants.add(RunKind::kPath, algorithm, world);
+    }
     for (const int iterations : iteration_factors(settings))
       for (const int population : population_factors(settings))
         for (const std::string& algorithm : own)

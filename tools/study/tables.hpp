@@ -30,6 +30,9 @@ enum class Direction { kSmallerIsBetter, kLargerIsBetter };
 enum class Criterion { kLength, kTime };
 [[nodiscard]] std::optional<Scores> scores(const Selection& selection, Criterion criterion, bool blocked);
 
+/// The largest difference between two algorithms in one world.
+[[nodiscard]] double widest_difference(const Scores& scores);
+
 /// Tables 8 to 11, with "table10-pairs" and "table11-pairs": p-values and Holm's correction. Empty where runs are
 /// missing.
 [[nodiscard]] std::vector<Table> rank_tables(const Selection& selection, bool blocked);
@@ -42,6 +45,9 @@ enum class Criterion { kLength, kTime };
 
 /// Table 15: PMOMVO-6, MOMVO and all others in the fifth world.
 [[nodiscard]] Table comparison_table(const Selection& selection, bool blocked);
+
+/// "success": how many paths of every algorithm reach in the blocked worlds.
+[[nodiscard]] Table success_table(const Selection& selection);
 
 /// "anytime": hypervolume at each checkpoint, of every algorithm.
 [[nodiscard]] Table anytime_table(const Selection& selection, bool blocked);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "tools/study/algorithms/algorithms.hpp"
 #include "tools/study/tables.hpp"
 
 namespace jink::study {
@@ -85,6 +86,7 @@ Table picture_table(const Selection& selection, const Scenes& scenes, bool block
   table.id = table_id("table12", blocked);
   table.title = fmt::format("{} for the illustration of obstacle avoidance, and paths of {} in them",
                             blocked ? "Blocked worlds" : "Scenarios", label_of(kRetained));
+  table.label_columns = 5;
   table.columns = {"Instance", "Start",     "Target",     "Obstacles' positions (m)", "Obstacles' velocities (m/s)",
                    "Reached",  "SLR, mean", "SLR, worst", "Smallest clearance (m)"};
   for (const std::string& world : pictured_worlds(blocked)) {
@@ -109,11 +111,11 @@ Table picture_table(const Selection& selection, const Scenes& scenes, bool block
 std::vector<Table> sensitivity_tables(const Selection& selection, bool blocked) {
   Table length = sensitivity_table(
       selection, "table13", "Mean path length (m) over iterations and population in " + world_text(blocked), 6, blocked,
-      "length (m)", [](const Records& all) { return mean(values(reached(all), key::kLength)); });
+      "length", [](const Records& all) { return mean(values(reached(all), key::kLength)); });
   length.notes.push_back("Of the paths that reach.");
   Table time = sensitivity_table(
       selection, "table14", "Mean planning time (ms) over iterations and population in " + world_text(blocked), 3,
-      blocked, "time (s)", [](const Records& all) { return 1000.0 * mean(measured(all, key::kPlanning)); });
+      blocked, "time", [](const Records& all) { return 1000.0 * mean(measured(all, key::kPlanning)); });
   time.notes.push_back(timing_note(selection));
   std::vector<Table> tables{std::move(length)};
   if (blocked) tables.push_back(reached_table(selection));
@@ -154,6 +156,38 @@ Table comparison_table(const Selection& selection, bool blocked) {
   return table;
 }
 
+Table success_table(const Selection& selection) {
+  Table table;
+  table.id = "success";
+  table.title = "Paths that reach in blocked worlds of the five sizes, with the 95 % interval of all";
+  table.columns = {"Algorithm"};
+  for (const std::string& world : numbered_worlds(true)) table.columns.push_back("Blocked " + world_number(world));
+  table.columns.insert(table.columns.end(), {"All (%)", "Interval (%)", "Mean SLR where it reaches"});
+  for (const Algorithm& algorithm : algorithms()) {
+    std::vector<Cell> row{label(std::string(algorithm.label))};
+    std::int64_t count = 0, of = 0;
+    std::vector<double> slr;
+    for (const std::string& world : numbered_worlds(true)) {
+      const Records all = selection.paths(algorithm.name, world);
+      const Records free = reached(all);
+      row.push_back(label(fmt::format("{}/{}", free.size(), all.size())));
+      count += static_cast<std::int64_t>(free.size());
+      of += static_cast<std::int64_t>(all.size());
+      for (const double value : values(free, key::kSlr)) slr.push_back(value);
+    }
+    const Proportion share = wilson(count, of);
+    row.push_back(of == 0 ? nothing() : number(100.0 * share.value(), 1));
+    row.push_back(of == 0 ? nothing() : label(fmt::format("{:.1f} to {:.1f}", 100.0 * share.low, 100.0 * share.high)));
+    row.push_back(slr.empty() ? nothing() : number(mean(slr), 4));
+    table.rows.push_back(std::move(row));
+  }
+  table.notes.push_back(
+      "The intervals (Wilson) take runs for independent; all algorithms have the same worlds, so compare them in "
+      "pairs: "
+      "the table of verdicts does. Who reaches more often reaches also in harder worlds, where paths are longer.");
+  return table;
+}
+
 std::vector<Table> all_tables(const Selection& selection, const Scenes& scenes) {
   std::vector<Table> tables;
   const auto add = [&](std::vector<Table> more) {
@@ -168,6 +202,7 @@ std::vector<Table> all_tables(const Selection& selection, const Scenes& scenes) 
     tables.push_back(comparison_table(selection, blocked));
     tables.push_back(anytime_table(selection, blocked));
   }
+  tables.push_back(success_table(selection));
   return tables;
 }
 

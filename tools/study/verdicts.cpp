@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/study/algorithms/algorithms.hpp"
 #include "tools/study/tables.hpp"
@@ -29,10 +30,14 @@ Verdict hv(const Selection& s, std::string_view other, bool blocked) {
                                   s.anytime(other, hardest_world(blocked)), lost_hv, always));
 }
 
-Verdict path(const Selection& s, std::string_view other, bool blocked,
-             const std::function<double(const Record&)>& value, const std::function<bool(const Record&)>& counts) {
-  return judge(paired_differences(s.paths(kRetained, hardest_world(blocked)), s.paths(other, hardest_world(blocked)),
-                                  value, counts));
+Verdict paths(const Selection& s, std::string_view other, const std::vector<std::string>& worlds,
+              const std::function<double(const Record&)>& value, const std::function<bool(const Record&)>& counts) {
+  std::vector<double> differences;
+  for (const std::string& world : worlds) {
+    const auto more = paired_differences(s.paths(kRetained, world), s.paths(other, world), value, counts);
+    differences.insert(differences.end(), more.begin(), more.end());
+  }
+  return judge(differences);
 }
 
 std::string names_of(const std::vector<std::string>& list) {
@@ -45,7 +50,10 @@ std::vector<std::string> subjects(const std::vector<Verdict>& verdicts, Outcome 
   std::vector<std::string> list;
   const std::vector<Respect> all = respects();
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (verdicts[i].outcome == wanted) list.push_back(all[i].subject);
+    if (verdicts[i].outcome == wanted)
+      list.push_back(wanted == Outcome::kBetter || wanted == Outcome::kWorse
+                         ? fmt::format("{} (by {:.3g}{})", all[i].subject, std::abs(verdicts[i].mean), all[i].unit)
+                         : all[i].subject);
   return list;
 }
 
@@ -79,26 +87,27 @@ Verdict judge(const std::vector<double>& differences) {
 }
 
 std::vector<Respect> respects() {
-  return {{"Hypervolume lost, scenario 5", "hypervolume in scenario 5", 4, false},
-          {"Hypervolume lost, blocked", "hypervolume in the blocked world", 4, false},
-          {"Path length, scenario 5 (mm)", "path length in scenario 5", 4, false},
-          {"Paths that fail, blocked (%)", "share of paths that fail in blocked worlds", 1, false},
-          {"Path length where both reach, blocked (mm)", "path length in blocked worlds", 1, false},
-          {"Planning time, scenario 5 (ms)", "planning time in scenario 5", 2, true},
-          {"Planning time, blocked (ms)", "planning time in blocked worlds", 2, true}};
+  return {{"Hypervolume lost, scenario 5", "hypervolume in scenario 5", ""},
+          {"Hypervolume lost, blocked", "hypervolume in the blocked world", ""},
+          {"Path length, scenario 5 (µm)", "path length in scenario 5", " µm"},
+          {"Paths that fail, blocked 1-5 (%)", "paths that fail in the blocked worlds", " %"},
+          {"Path length where both reach, blocked 1-5 (mm)", "path length in the blocked worlds", " mm"},
+          {"Planning time, scenario 5 (ms)", "planning time in scenario 5", " ms"},
+          {"Planning time, blocked 5 (ms)", "planning time in blocked worlds of its size", " ms"}};
 }
 
 std::vector<Verdict> compare(const Selection& s, std::string_view other) {
-  const auto length = [](const Record& r) { return 1000.0 * r.value(key::kLength); };
+  const auto micrometres = [](const Record& r) { return 1e6 * r.value(key::kLength); };
+  const auto millimetres = [](const Record& r) { return 1e3 * r.value(key::kLength); };
   const auto failure = [](const Record& r) { return 100.0 * (1.0 - r.value(key::kReached)); };
   const auto time = [](const Record& r) { return 1000.0 * r.measured.at(key::kPlanning); };
   return {hv(s, other, false),
           hv(s, other, true),
-          path(s, other, false, length, has_reached),
-          path(s, other, true, failure, always),
-          path(s, other, true, length, has_reached),
-          path(s, other, false, time, always),
-          path(s, other, true, time, always)};
+          paths(s, other, {hardest_world(false)}, micrometres, has_reached),
+          paths(s, other, numbered_worlds(true), failure, always),
+          paths(s, other, numbered_worlds(true), millimetres, has_reached),
+          paths(s, other, {hardest_world(false)}, time, always),
+          paths(s, other, {hardest_world(true)}, time, always)};
 }
 
 Table verdict_table(const Selection& selection) {
@@ -121,10 +130,10 @@ Table verdict_table(const Selection& selection) {
         row.push_back(nothing());
         continue;
       }
-      Cell cell = number(v.mean, all[i].decimals);
+      Cell cell = number(v.mean, 4);
+      cell.text = fmt::format("{:+.3g}", v.mean);
       if (v.pairs > 1)
-        cell.text = fmt::format("{:+.{}f} [{:+.{}f}, {:+.{}f}] {}", v.mean, all[i].decimals, v.low, all[i].decimals,
-                                v.high, all[i].decimals, to_string(v.outcome));
+        cell.text = fmt::format("{:+.3g} [{:+.3g}, {:+.3g}] {}", v.mean, v.low, v.high, to_string(v.outcome));
       cell.marked = v.outcome == Outcome::kWorse;
       row.push_back(std::move(cell));
     }
@@ -152,6 +161,10 @@ std::vector<std::string> verdict_sentences(const Selection& selection) {
     const auto same = subjects(verdicts, Outcome::kNoDifference);
     const auto unknown = subjects(verdicts, Outcome::kUnknown);
     std::string text = fmt::format("**{} against {}:** ", label_of(kRetained), label_of(name));
+    if (unknown.size() == verdicts.size()) {
+      sentences.push_back(text + "too few runs to tell.");
+      continue;
+    }
     text += worse.empty() ? "worse in nothing" : "worse in " + names_of(worse);
     text += better.empty() ? "; better in nothing" : "; better in " + names_of(better);
     if (!same.empty()) text += "; no difference shown in " + names_of(same);

@@ -27,10 +27,9 @@ struct Verdict {
 
 /// A respect in which algorithms are compared.
 struct Respect {
-  std::string name;     ///< "path length, scenario 5 (mm)"
-  std::string subject;  ///< "shorter paths in scenario 5": what the better one has
-  int decimals = 0;
-  bool timed = false;
+  std::string name;     ///< of the column: "Path length, scenario 5 (µm)"
+  std::string subject;  ///< in a sentence: "path length in scenario 5"
+  std::string unit;     ///< behind a number: " µm"
 };
 [[nodiscard]] std::vector<Respect> respects();
 
