@@ -17,8 +17,8 @@ namespace {
 TEST(PaperNumbers, AllTablesAreThere) {
   std::map<std::string, int> counts;
   for (const PaperNumber& n : paper_numbers()) ++counts[std::string(n.table)];
-  // Tables 3 to 5: four numbers for MOMVO and 6 x 5 x 4. 6, 7: 7 x 5 x 4. 8, 9: 7 x 6, F and its critical value. 10, 11:
-  // 21 differences and marks, and the critical difference. 13, 14: 9 x 7. 15: 5 x 2 x 4.
+  // Tables 3 to 5: four numbers for MOMVO and 6 x 5 x 4. 6, 7: 7 x 5 x 4. 8, 9: 7 x 6, F and its critical value. 10,
+  // 11: 21 differences and marks, and the critical difference. 13, 14: 9 x 7. 15: 5 x 2 x 4.
   const std::map<std::string, int> expected{{"table03", 124}, {"table04", 124}, {"table05", 124}, {"table06", 140},
                                             {"table07", 140}, {"table08", 44},  {"table09", 44},  {"table10", 43},
                                             {"table11", 43},  {"table13", 63},  {"table14", 63},  {"table15", 40}};
@@ -80,7 +80,8 @@ struct Group {
   [[nodiscard]] bool possible() const {
     const double low = std::min(best, worst) - half_digit, high = std::max(best, worst) + half_digit;
     double most = 0.0;
-    for (const double m : {mean - half_digit, mean + half_digit, std::clamp((low + high) / 2.0, mean - half_digit, mean + half_digit)})
+    for (const double m :
+         {mean - half_digit, mean + half_digit, std::clamp((low + high) / 2.0, mean - half_digit, mean + half_digit)})
       most = std::max(most, (high - m) * (m - low));
     const double range = std::max(0.0, high - low - 4.0 * half_digit);
     return deviation - deviation_half_digit <= std::sqrt(most * 20.0 / 19.0) &&

@@ -87,14 +87,14 @@ TEST(PaperStatistics, PairedComparisonsAreThePapersButForThreeMarks) {
       if (underlined != pair.lsd) contradictions.push_back(table + ' ' + a + ' ' + b);
     }
   }
-  EXPECT_EQ(contradictions,
-            (std::vector<std::string>{"table10 PMOMVO-4 PMOMVO-6", "table10 PMOMVO-8 PMOMVO-12",
-                                      "table11 PMOMVO-2 PMOMVO-12"}));
+  EXPECT_EQ(contradictions, (std::vector<std::string>{"table10 PMOMVO-4 PMOMVO-6", "table10 PMOMVO-8 PMOMVO-12",
+                                                      "table11 PMOMVO-2 PMOMVO-12"}));
 }
 
 /// Ranking the means of Tables 6 and 7 gives Tables 8 and 9, but for scenario 5 of the SLR.
 TEST(PaperStatistics, RanksFollowFromThePapersMeansButInOneColumn) {
-  for (const auto& [means, ranks] : std::map<std::string, std::string>{{"table06", "table08"}, {"table07", "table09"}}) {
+  for (const auto& [means, ranks] :
+       std::map<std::string, std::string>{{"table06", "table08"}, {"table07", "table09"}}) {
     Scores scores;
     for (const std::string& algorithm : kAlgorithms) {
       scores.emplace_back();
@@ -104,7 +104,9 @@ TEST(PaperStatistics, RanksFollowFromThePapersMeansButInOneColumn) {
     const Scores ours = friedman_ranks(scores), papers = paper_ranks(ranks);
     for (std::size_t a = 0; a < ours.size(); ++a)
       for (std::size_t s = 0; s < 5; ++s)
-        if (ranks == "table09" || s != 4) EXPECT_EQ(ours[a][s], papers[a][s]) << ranks << ' ' << kAlgorithms[a] << ' ' << s;
+        if (ranks == "table09" || s != 4) {
+          EXPECT_EQ(ours[a][s], papers[a][s]) << ranks << ' ' << kAlgorithms[a] << ' ' << s;
+        }
   }
   // Printed 1.0202, 1.0203, 1.0199, 1.0203 for 6, 8, 10 and 12 slaves, and ranked 3, 4, 2, 1.
   const Scores tied = friedman_ranks({{1.0378}, {1.0344}, {1.0205}, {1.0202}, {1.0203}, {1.0199}, {1.0203}});
@@ -141,8 +143,8 @@ TEST(FriedmanRanks, AddUpToTheSameForAnyScores) {
 
 /// Conover, section 5.8, example 1: four grasses ranked by twelve homeowners, with ties; T1 = 8.097, T2 = 3.19.
 TEST(Friedman, AgreesWithATextbookExampleWithTies) {
-  const Scores by_block{{4, 3, 2, 1},   {4, 2, 3, 1}, {3, 1.5, 1.5, 4}, {3, 1, 2, 4},   {4, 2, 1, 3}, {2, 2, 2, 4},
-                        {1, 3, 2, 4},   {2, 4, 1, 3}, {3.5, 1, 2, 3.5}, {4, 1, 3, 2},   {4, 2, 3, 1}, {3.5, 1, 2, 3.5}};
+  const Scores by_block{{4, 3, 2, 1}, {4, 2, 3, 1}, {3, 1.5, 1.5, 4}, {3, 1, 2, 4}, {4, 2, 1, 3}, {2, 2, 2, 4},
+                        {1, 3, 2, 4}, {2, 4, 1, 3}, {3.5, 1, 2, 3.5}, {4, 1, 3, 2}, {4, 2, 3, 1}, {3.5, 1, 2, 3.5}};
   Scores ranks(4, std::vector<double>(12));
   for (std::size_t s = 0; s < 12; ++s)
     for (std::size_t a = 0; a < 4; ++a) ranks[a][s] = by_block[s][a];
@@ -198,7 +200,7 @@ TEST(FisherLsd, APairIsAsSignificantAsItsDistanceFromTheCriticalValue) {
   for (const char* table : {"table08", "table09"}) {
     const Lsd lsd = fisher_lsd(paper_ranks(table));
     for (const Comparison& pair : lsd.pairs) {
-      EXPECT_EQ(pair.p < 0.05, std::abs(pair.difference) > lsd.critical_two_sided);
+      EXPECT_EQ(pair.p<0.05, std::abs(pair.difference)> lsd.critical_two_sided);
       EXPECT_EQ(pair.p < 0.10, pair.lsd);  // one-sided at 5 % is two-sided at 10 %
       EXPECT_GE(pair.p_holm, pair.p);
       EXPECT_EQ(pair.holm, pair.p_holm <= 0.05);
