@@ -104,8 +104,9 @@ TEST(PaperStatistics, RanksFollowFromThePapersMeansButInOneColumn) {
     const Scores ours = friedman_ranks(scores), papers = paper_ranks(ranks);
     for (std::size_t a = 0; a < ours.size(); ++a)
       for (std::size_t s = 0; s < 5; ++s)
-        if (ranks == "table09" || s != 4)
+        if (ranks == "table09" || s != 4) {
           EXPECT_EQ(ours[a][s], papers[a][s]) << ranks << ' ' << kAlgorithms[a] << ' ' << s;
+        }
   }
   // Printed 1.0202, 1.0203, 1.0199, 1.0203 for 6, 8, 10 and 12 slaves, and ranked 3, 4, 2, 1.
   const Scores tied = friedman_ranks({{1.0378}, {1.0344}, {1.0205}, {1.0202}, {1.0203}, {1.0199}, {1.0203}});

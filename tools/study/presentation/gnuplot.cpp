@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kPixelsPerMm = 300.0 / 25.4;  // PNG
 constexpr double kSvgPerMm = 96.0 / 25.4;
-constexpr double kPoint = 8.0;      // the font's size in print
-constexpr double kBarsWidth = 0.8;  // of the distance between bars' places
-constexpr double kRoom = 0.03;      // left and right of curves, of the axis' length
+constexpr double kPoint = 8.0;                  // the font's size in print
+constexpr double kBarsWidth = 0.8;              // of the distance between bars' places
+constexpr int kTicksOnFloor = 8, kTicksUp = 4;  // at most, in space
+constexpr double kRoom = 0.03;                  // left and right of curves, of the axis' length
 constexpr const char* kSphereColour = "#b9cfe6";
 
 std::string value(double v) {
@@ -175,7 +176,7 @@ std::string x_ticks(const Panel& panel, double panel_width) {
     longest = std::max(longest, panel.categories[i].size());
   }
   for (const double t : panel.ticks) ticks.push_back(fmt::format("'{0:g}' {0}", t));
-  if (ticks.empty()) return "set xtics auto norotate autojustify; unset bmargin\n";
+  if (ticks.empty()) return "set xtics nomirror auto norotate autojustify; unset bmargin\n";
   const double room = 0.8 * panel_width / static_cast<double>(ticks.size());
   const bool turned = 1.6 * static_cast<double>(longest) > room;
   // gnuplot reserves too little for turned names.
@@ -187,7 +188,7 @@ std::string x_ticks(const Panel& panel, double panel_width) {
 std::string flat_panel(const Panel& panel, double panel_width, int& index) {
   std::string text =
       "set border 3 lc rgb '#404040' lw 0.8\nset grid ytics lc rgb '#d8d8d8' lw 0.6 dt solid; "
-      "set rmargin 3\n";
+      "set rmargin 3; set ytics auto\n";
   text += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
   text += panel.log_y ? "set logscale y; set format y '%h'\n" : "unset logscale y; set format y '%h'\n";
   text += x_ticks(panel, panel_width) + flat_ranges(panel);
@@ -216,18 +217,25 @@ std::string space_ranges(const Panel& panel, double& floor) {
   }
   const auto whole = [](const Extent& e) {
     const double low = std::floor(e.low);
-    return fmt::format("[{}:{}]", low, std::max(low + 1.0, std::ceil(e.high)));
+    return std::pair{low, std::max(low + 1.0, std::ceil(e.high))};
+  };
+  const auto axis = [&](const char* name, const std::optional<std::pair<double, double>>& given, const Extent& e,
+                        int most) {
+    const auto [low, high] = given ? *given : whole(e);
+    // Ticks at whole metres, few enough to stand apart.
+    return fmt::format("set {0}range [{1}:{2}]; set {0}tics {3:g} norotate autojustify\n", name, low, high,
+                       std::max(1.0, std::ceil((high - low) / most)));
   };
   floor = panel.z_range ? panel.z_range->first : std::floor(z.low);
-  return range("x", panel.x_range, whole(x)) + range("y", panel.y_range, whole(y)) +
-         range("z", panel.z_range, whole(z));
+  return axis("x", panel.x_range, x, kTicksOnFloor) + axis("y", panel.y_range, y, kTicksOnFloor) +
+         axis("z", panel.z_range, z, kTicksUp);
 }
 
 std::string space_panel(const Panel& panel, int& index) {
   double floor = 0.0;
   std::string text = space_ranges(panel, floor);
-  text += "unset logscale\nset xtics auto norotate autojustify; set ztics auto; unset rmargin; unset bmargin\n";
-  text += fmt::format("set zlabel {} rotate offset 3,0; set xyplane at {}\n", in_quotes(panel.z_label), value(floor));
+  text += "unset logscale; unset rmargin; unset bmargin\n";
+  text += fmt::format("set zlabel {} rotate offset 1.2,0; set xyplane at {}\n", in_quotes(panel.z_label), value(floor));
   text +=
       "set view 58,38,1.4; set view equal xyz\n"
       "set border 895 lc rgb '#a0a0a0' lw 0.6; set grid x y lc rgb '#d8d8d8' lw 0.6 dt solid\n"
@@ -265,6 +273,7 @@ std::string space_panel(const Panel& panel, int& index) {
 
 std::string legend_strip(const Layout& layout) {
   if (layout.legend.empty()) return "";
+  // The first entry is a curve, out of sight: gnuplot draws no legend where nothing is plotted.
   std::vector<std::string> entries;
   for (const LegendEntry& entry : layout.legend) {
     const int ls = line_number(entry.style);
@@ -273,15 +282,15 @@ std::string legend_strip(const Layout& layout) {
                        : entry.kind == Kind::bars        ? "boxes ls {0} dt solid fs solid 0.8 border lc rgb 'black'"
                        : entry.kind == Kind::boxes       ? "boxes ls {0} dt solid fs solid 0.35 border lc rgb 'black'"
                                                          : "lines ls {0}";
-    entries.push_back(
-        fmt::format("keyentry with {} title {}", fmt::format(fmt::runtime(with), ls), in_quotes(entry.label)));
+    entries.push_back(fmt::format("{} with {} title {}", entries.empty() ? "-1" : "keyentry",
+                                  fmt::format(fmt::runtime(with), ls), in_quotes(entry.label)));
   }
   return fmt::format(
       "\n# The legend.\nset origin 0,0; set size 1,{:.5f}\nset lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0\n"
       "unset title; unset xlabel; unset ylabel; unset border; unset tics; unset grid; unset logscale\n"
       "set xrange [0:1]; set yrange [0:1]\nset key center horizontal maxcols {} reverse Left samplen 3 spacing 1.1 "
       "width 2\n"
-      "plot -1 notitle lc bgnd, \\\n     {}\n",  // outside: a legend alone is nothing that gnuplot plots
+      "plot {}\n",
       layout.legend_height / layout.height, layout.legend_columns, fmt::join(entries, ", \\\n     "));
 }
 
@@ -307,10 +316,12 @@ std::string head(const Figure& figure, const Layout& layout) {
       "'white' }}\n",
       layout.width * kPixelsPerMm, layout.height * kPixelsPerMm, kPoint, scale, scale, scale, layout.width * kSvgPerMm,
       layout.height * kSvgPerMm, kPoint * 96.0 / 72.0);
-  return text + fmt::format(
-                    "set output '{}.'.form\nset multiplot\nset tics nomirror out scale 0.6\n"
-                    "unset lmargin; unset rmargin; unset tmargin; unset bmargin\n",
-                    figure.id);
+  return text +
+         fmt::format(
+             "set output '{}.'.form\nset multiplot\n"
+             "set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6; set ztics nomirror out scale 0.6\n"
+             "unset lmargin; unset rmargin; unset tmargin; unset bmargin\n",
+             figure.id);
 }
 
 }  // namespace

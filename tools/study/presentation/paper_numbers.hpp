@@ -26,7 +26,7 @@ struct PaperNumber {
   std::string_view statistic;
   std::string_view printed;  ///< as printed, misprints too
   std::string_view where;    ///< "Table 3, MOMVO (m = 0), Best, l = 0"
-  std::string_view note;     ///< why not to take it as it stands; empty for most
+  std::string_view note;     ///< what contradicts it, in the paper or by arithmetic; empty for most
 };
 
 /// All of them, in the paper's order. Valid for the program's life.

@@ -13,6 +13,8 @@
 namespace jink::study {
 namespace {
 
+constexpr std::size_t kManyColumns = 7;  // more are set closer
+
 /// The SVG's element, without what stands before it.
 std::string read_svg(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -62,8 +64,10 @@ std::string cell_html(const Cell& cell, const char* element, bool number) {
 std::string part_html(const Table& table) {
   (void)to_csv(table);  // throws where rows and headings do not fit
   std::string html = fmt::format(
-      "<div class=\"wide\" id=\"{}\">\n<table class=\"data\">\n<caption><strong>{}.</strong> {}</caption>\n<thead><tr>",
-      html_escaped(table.id), html_escaped(table_name(table.id)), html_prose(table.title));
+      "<div class=\"wide\" id=\"{}\">\n<table class=\"data{}\">\n<caption><strong>{}.</strong> "
+      "{}</caption>\n<thead><tr>",
+      html_escaped(table.id), table.columns.size() > kManyColumns ? " many" : "", html_escaped(table_name(table.id)),
+      html_prose(table.title));
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     html += cell_html(label(table.columns[c]), "th", c >= table.label_columns);
   html += "</tr></thead>\n<tbody>\n";

@@ -114,7 +114,7 @@ Friedman friedman(const Scores& ranks, double alpha) {
   const double total = sums.squared_ranks - correction;
   if (total <= 0.0) return result;  // all tied
   const double among = sums.squared_sums / sums.sigma - correction;
-  result.chi_square = (sums.mu - 1.0) * among / total;
+  result.chi_square = (sums.mu - 1.0) * sums.sigma * among / total;
   result.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(sums.mu - 1.0), result.chi_square));
   const double rest = sums.disagreement() / sums.sigma;
   result.iman_davenport = rest <= 0.0 ? kInfinity : (sums.sigma - 1.0) * among / rest;

@@ -14,6 +14,7 @@ namespace jink::study {
 namespace {
 
 constexpr const char* kNothing = "-";
+constexpr std::size_t kManyColumns = 7;  // more are set smaller in print
 
 void check(const Table& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i)
@@ -61,7 +62,7 @@ std::string markdown_cell(const Cell& cell) {
 std::string latex_cell(const Cell& cell) {
   std::string out = latex_escaped(cell.text);
   if (cell.marked && !out.empty()) out = "\\textbf{" + out + "}";
-  if (!cell.paper.empty()) out += (out.empty() ? "" : " ") + ("{\\scriptsize[" + latex_escaped(cell.paper) + "]}");
+  if (!cell.paper.empty()) out += (out.empty() ? "" : " ") + ("{\\tiny[" + latex_escaped(cell.paper) + "]}");
   return out;
 }
 
@@ -148,9 +149,10 @@ std::string to_markdown(const Table& table) {
 
 std::string to_latex(const Table& table) {
   check(table);
+  const char* const size = table.columns.size() > kManyColumns ? "\\scriptsize\n\\setlength{\\tabcolsep}{2.5pt}"
+                                                               : "\\small\n\\setlength{\\tabcolsep}{4pt}";
   std::string out = "% Needs \\usepackage{booktabs}.\n\\begin{table}[htbp]\n\\centering\n\\caption{" +
-                    latex_escaped(table.title) + "}\n\\label{tab:" + table.id +
-                    "}\n\\small\n\\setlength{\\tabcolsep}{4pt}\n\\begin{tabular}{";
+                    latex_escaped(table.title) + "}\n\\label{tab:" + table.id + "}\n" + size + "\n\\begin{tabular}{";
   for (std::size_t c = 0; c < table.columns.size(); ++c) out += c < table.label_columns ? 'l' : 'r';
   out += "}\n\\toprule\n";
   for (std::size_t c = 0; c < table.columns.size(); ++c) out += (c > 0 ? " & " : "") + latex_escaped(table.columns[c]);
