@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MOGWO, the multi-objective grey wolf optimizer: S. Mirjalili, S. Saremi, S. M. Mirjalili and L. dos S. Coelho, Expert
 // Systems with Applications 47, 2016, DOI 10.1016/j.eswa.2015.10.039. Equations are those of that paper.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "tools/study/algorithms/comparators.hpp"
 #include "tools/study/algorithms/grid_repository.hpp"

@@ -2,6 +2,8 @@
 // MOPSO: C. A. Coello Coello, G. T. Pulido and M. S. Lechuga, IEEE Transactions on Evolutionary Computation 8(3), 2004,
 // DOI 10.1109/TEVC.2004.826067, with the repository of the code that circulates (Yarpiz 2015).
 #include <algorithm>
+#include <memory>
+#include <vector>
 
 #include "tools/study/algorithms/comparators.hpp"
 #include "tools/study/algorithms/grid_repository.hpp"
@@ -10,7 +12,8 @@
 namespace jink::study {
 namespace {
 
-/// Parameters of [Paper] section 5.5; the deletion pressure, which it does not give, is that of the circulating code.
+/// Parameters of [Paper] section 5.5 as printed there (leader pressure 2); the deletion pressure, which it does not
+/// give, is that of the circulating code.
 constexpr GridSettings kGrid{
     .inflation = 0.1, .cells = 7, .leader = 2, .deletion = 2, .pressure = Pressure::kExponential};
 constexpr double kCognitive = 2.0;  // c1, [Paper] section 5.5

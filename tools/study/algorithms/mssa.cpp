@@ -3,7 +3,10 @@
 // S. M. Mirjalili, Advances in Engineering Software 114, 2017, DOI 10.1016/j.advengsoft.2017.07.002. Equations are
 // those of that paper.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "planner/portable_math.hpp"
 #include "tools/study/algorithms/comparators.hpp"

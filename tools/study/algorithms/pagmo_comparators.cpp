@@ -3,6 +3,9 @@
 // Evolutionary Computation 6(2), 2002; X. Li, GECCO 2003; Q. Zhang and H. Li, ibid. 11(6), 2007, with the differential
 // evolution of H. Li and Q. Zhang, ibid. 13(2), 2009. No other file of the project's library sees pagmo2.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
 #include <pagmo/algorithms/moead.hpp>
 #include <pagmo/algorithms/nsga2.hpp>
 #include <pagmo/algorithms/nspso.hpp>
@@ -11,6 +14,7 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // The loop that MSSA, MOGWO and MOPSO share: evaluate everybody, learn from it, move everybody.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
