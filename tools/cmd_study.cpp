@@ -88,6 +88,7 @@ int run_study(const StudyOptions& options, const Printer& printer) {
   const study::StudySettings settings = settings_of(options, planner);
   study::Results results = begin(settings, options, printer);
   study::require_gnuplot();
+  const study::Setting setting(settings, planner);
   campaign::make_folder(options.out);
   campaign::LineFile file(study::results_path(options.out), study::to_header(results.settings));
   const study::Machine machine = study::this_machine();
@@ -99,7 +100,6 @@ int run_study(const StudyOptions& options, const Printer& printer) {
       fmt::format("seed {}: {} runs on {} threads, results in {}", settings.seed, total, threads, options.out));
   catch_signals();
   campaign::ProgressPrinter progress(printer);
-  const study::Setting setting(settings, planner);
   study::CampaignOptions campaign_options{threads, interrupted,
                                           [&](const study::Progress& p) { progress(progress_of(p)); }};
   const bool complete = study::run_campaign(results, file, setting, campaign_options);
@@ -120,9 +120,10 @@ int run_merge(const StudyOptions& options, const Printer& printer) {
   const config::Settings planner = config::recorded_settings(study::results_path(options.merge.front()).string(),
                                                              results.settings.parameters, {}, missing);
   study::require_gnuplot();
+  const study::Setting setting(results.settings, planner);
   campaign::make_folder(options.out);
   campaign::write_whole(study::results_path(options.out), study::to_text(results));
-  conclude(results, study::Setting(results.settings, planner), options, printer);
+  conclude(results, setting, options, printer);
   const std::size_t all = study::jobs_of(results.settings).size();
   if (results.runs.size() == all) return kExitReached;
   printer.line(fmt::format("{} of {} runs are missing: the same settings with --out {} --resume make them",

@@ -126,7 +126,15 @@ Setting::Setting(const StudySettings& settings, const config::Settings& p)
     : planner(p),
       scenes(settings.seed),
       steps(front_steps(scenes.world(hardest_world(false), 0), p.paper, false)),
-      blocked_steps(front_steps(scenes.world(hardest_world(true), 0), p.paper, true)) {}
+      blocked_steps(front_steps(scenes.world(hardest_world(true), 0), p.paper, true)) {
+  for (const Algorithm& algorithm : algorithms()) {
+    try {
+      static_cast<void>(algorithm.make(planner.optimizer, 2, 2));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", algorithm.label, error.what()));
+    }
+  }
+}
 
 std::vector<double> checkpoints() {
   return {0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0};

@@ -15,7 +15,8 @@ namespace jink::study {
 /// What all runs share. Immutable, so threads may share it.
 struct Setting {
   /// Reads the paper's scenarios and searches the reference fronts (a second or two). Throws config::ConfigError, and
-  /// std::invalid_argument as front_steps() does. The parameters are those that settings.parameters lists.
+  /// std::invalid_argument as front_steps() does and where an algorithm refuses the parameters. The parameters are
+  /// those that settings.parameters lists.
   Setting(const StudySettings& settings, const config::Settings& planner);
 
   config::Settings planner;
