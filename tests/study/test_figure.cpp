@@ -283,6 +283,13 @@ TEST(Figure, EqualValuesAndManySeriesAreNoTrouble) {
   for (int i = 0; i < 20; ++i) EXPECT_NE(svg.find(">s" + std::to_string(i) + "<"), std::string::npos) << i;
 }
 
+TEST(Figure, TicksOfANarrowAxisDiffer) {
+  const Folder folder;
+  const Figure figure = figure_of(series({1, 2}, {1.00000001, 1.00000003}, Kind::line));
+  const std::string svg = read(draw(figure, folder.path()).svg);
+  EXPECT_NE(svg.find(">1.00000002<"), std::string::npos);
+}
+
 std::string refusal(const Figure& figure) {
   const Folder folder;
   try {

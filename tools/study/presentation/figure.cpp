@@ -84,8 +84,9 @@ std::string complaint(const std::string& said) {
 void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   Pipe pipe;
   if (pipe.end(0) < 0) refuse(id, fmt::format("no pipe to gnuplot: {}", std::strerror(errno)));
-  std::string program = "gnuplot", script = id + ".gp";
-  std::array<char*, 3> arguments{program.data(), script.data(), nullptr};
+  // Without the user's own settings, so that the same figure looks the same everywhere.
+  std::string program = "gnuplot", defaults = "-d", script = id + ".gp";
+  std::array<char*, 4> arguments{program.data(), defaults.data(), script.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());

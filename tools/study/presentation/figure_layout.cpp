@@ -39,7 +39,10 @@ constexpr std::array<Look, kStyles> kLooks{{{"#000000", "solid", 7},
                                             {"#117733", "(9,3,2,3,2,3)", 10},
                                             {"#999933", "(5,2)", 15},
                                             {"#888888", "(12,4)", 2},
-                                            {"#ddcc77", "(2,4)", 1}}};
+                                            {"#ddcc77", "(2,4)", 1},
+                                            {"#0044aa", "(1,3)", 3},
+                                            {"#aa3377", "(4,2,1,2)", 14},
+                                            {"#66ccee", "solid", 8}}};
 
 [[noreturn]] void refuse(const Figure& figure, const std::string& reason) {
   throw FigureError(fmt::format("figure {}: {}", figure.id, reason));

@@ -190,7 +190,7 @@ std::string flat_panel(const Panel& panel, double panel_width, int& index) {
       "set border 3 lc rgb '#404040' lw 0.8\nset grid ytics lc rgb '#d8d8d8' lw 0.6 dt solid; "
       "set rmargin 3; set ytics auto\n";
   text += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
-  text += panel.log_y ? "set logscale y; set format y '%h'\n" : "unset logscale y; set format y '%h'\n";
+  text += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   text += x_ticks(panel, panel_width) + flat_ranges(panel);
   std::vector<std::string> plots;
   for (std::size_t i = 0; i < panel.series.size(); ++i, ++index) {
@@ -300,7 +300,7 @@ std::string head(const Figure& figure, const Layout& layout) {
   std::string text = fmt::format(
       "# {0}: {1}\n# Drawn by gnuplot 5.4 from {0}.dat; after a change, `gnuplot {0}.gp` in this folder draws it "
       "again.\n"
-      "data = '{0}.dat'\nset encoding utf8\nset datafile missing 'NaN'\n",
+      "data = '{0}.dat'\nset encoding utf8\nset datafile missing 'NaN'\nset format '%.10g'\n",
       figure.id, title);
   std::set<int> styles;
   for (const Panel& panel : figure.panels)

@@ -41,7 +41,7 @@ void check(const Figure& figure);
 
 /// `set style line 101 ...`: colours of different lightness, with dashes and marks of their own, so that neighbours
 /// differ without colour too. Repeats after kStyles.
-inline constexpr int kStyles = 13;
+inline constexpr int kStyles = 16;
 [[nodiscard]] std::string style_line(int style);
 /// The number of the line style that style_line() sets.
 [[nodiscard]] int line_number(int style);
