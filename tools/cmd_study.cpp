@@ -50,7 +50,8 @@ study::StudySettings settings_of(const StudyOptions& options, const config::Sett
 }
 
 campaign::Progress progress_of(const study::Progress& p) {
-  return {p.work_done, p.work_total, p.work_in_this_call,
+  const double done = p.seconds_before + p.seconds_in_this_call;
+  return {done, done + p.seconds_left, p.seconds_in_this_call,
           fmt::format("{} of {} runs{}", p.done, p.total, p.timing ? ", now timing them one by one" : "")};
 }
 

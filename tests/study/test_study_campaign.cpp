@@ -21,12 +21,15 @@ class StudyCampaign : public ::testing::Test {
     const Setting setting(results.settings, small_planner());
     std::filesystem::create_directories(folder);
     campaign::LineFile file(results_path(folder), to_header(results.settings));
-    std::size_t told = 0;
-    complete = run_campaign(results, file, setting, {threads, interrupted, [&](const Progress& p) {
-                                                       EXPECT_GE(p.done, told);
-                                                       EXPECT_LE(p.work_done, p.work_total * (1.0 + 1e-9));
-                                                       told = p.done;
-                                                     }});
+    const std::size_t had = results.runs.size();
+    std::size_t told = had;
+    complete =
+        run_campaign(results, file, setting, {threads, interrupted, [&](const Progress& p) {
+                                                EXPECT_GE(p.done, told);
+                                                EXPECT_EQ(p.seconds_in_this_call > 0.0, p.done > had);
+                                                EXPECT_EQ(p.seconds_left > 1e-12, p.done > had && p.done < p.total);
+                                                told = p.done;
+                                              }});
     return results;
   }
   static Results begun() {

@@ -114,6 +114,15 @@ TEST(RankTables, OfBlockedWorldsPutWhoFailsLessOftenFirst) {
   EXPECT_EQ(friedman_ranks(*found)[1][0], 7.0);
 }
 
+TEST(RankTables, DoNotRankTheLastBitsOfLengths) {
+  const Results results = changed(1, [](Record& r) {
+    if (r.job.variant.kind == RunKind::kPath) r.values[key::kSlr] = 1.0 + 1e-11 * place_of(r.job.variant.algorithm);
+  });
+  const std::vector<Table> tables = rank_tables(Selection(results), false);
+  for (const std::vector<Cell>& r : find(tables, "table08").rows) EXPECT_EQ(r[1].value, 4.0) << r[0].text;
+  EXPECT_NE(find(tables, "table08").notes.front().find("are not shown to differ"), std::string::npos);
+}
+
 TEST(SizeTables, AreLeftEmptyWhereAQuickStudyHasNothing) {
   const Results results = changed(1, [](Record& r) {
     if (r.job.variant.kind == RunKind::kPath) r.values[key::kLength] = r.job.variant.population;
@@ -131,6 +140,7 @@ TEST(Verdict, IsByTheIntervalOfThePairedDifferences) {
   EXPECT_EQ(judge({1.0, 1.1, 0.9}).outcome, Outcome::kWorse);
   EXPECT_EQ(judge({-1.0, 1.1, 0.1}).outcome, Outcome::kNoDifference);
   EXPECT_EQ(judge({0.0, 0.0}).outcome, Outcome::kNoDifference);
+  EXPECT_EQ(judge({-1.0, -1.1, -0.9}, 2.0).outcome, Outcome::kNoDifference) << "below what is resolved";
   EXPECT_EQ(judge({-1.0}).outcome, Outcome::kUnknown);
   EXPECT_EQ(judge({}).outcome, Outcome::kUnknown);
   // Student's t of 2 degrees of freedom at 97.5 % is 4.3027.

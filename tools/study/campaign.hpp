@@ -9,11 +9,13 @@
 
 namespace jink::study {
 
-/// How far a study is. Work is counted in evaluations; a run that is not timed shares the machine with others.
+/// How far a study is. Seconds are of the wall, estimated from the runs that this call has made; 0 before the first.
 struct Progress {
-  std::size_t done = 0;   ///< runs, those of an earlier call too
-  std::size_t total = 0;  ///< of the shard
-  double work_done = 0.0, work_total = 0.0, work_in_this_call = 0.0;
+  std::size_t done = 0;               ///< runs, those of an earlier call too
+  std::size_t total = 0;              ///< of the shard
+  double seconds_before = 0.0;        ///< that the runs of an earlier call would take
+  double seconds_in_this_call = 0.0;  ///< that this call's runs took
+  double seconds_left = 0.0;
   bool timing = false;  ///< the timed runs have begun
 };
 

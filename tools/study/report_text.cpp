@@ -174,7 +174,10 @@ std::vector<std::string> abstract_of(const Selection& s, const ReportParts& part
                          [&](const Claim& c) { return c.outcome == outcome; });
   };
   std::vector<std::string> paragraphs{fmt::format(
-      "Section 5 of the paper again, with {} runs of each variant: all its tables and figures, the same on worlds "
+      "Section 5 of [Paper], \"Parallel Multiobjective Multiverse Optimizer for Path Planning of Unmanned Aerial "
+      "Vehicles in a "
+      "Dynamic Environment with Moving Obstacles\", again, with {} runs of each variant: all its tables and figures, "
+      "the same on worlds "
       "whose "
       "straight line is blocked, and hypervolume during the search. Of {} statements of the paper that were checked, "
       "these runs agree with {}, do not agree with {}, and show neither for {}{}.",

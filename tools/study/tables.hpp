@@ -25,13 +25,15 @@ enum class Direction { kSmallerIsBetter, kLargerIsBetter };
 /// Tables 6 and 7: SLR; planning time, and "table07-flight", the flown time.
 [[nodiscard]] std::vector<Table> path_tables(const Selection& selection, bool blocked);
 
+/// Below this, mean SLRs count as equal: 22 µm of 22 m, which no flight shows. Ranks would otherwise order the last
+/// bits of numbers.
+inline constexpr double kSameSlr = 1e-6;
+
 /// How the algorithms do in the five worlds, smaller is better. By length: first by the share of paths that failed,
-/// then by the mean SLR of the others; by time: the mean planning time. None where runs are missing.
+/// then by the mean SLR of the others in steps of kSameSlr; by time: the mean planning time. None where runs are
+/// missing.
 enum class Criterion { kLength, kTime };
 [[nodiscard]] std::optional<Scores> scores(const Selection& selection, Criterion criterion, bool blocked);
-
-/// The largest difference between two algorithms in one world.
-[[nodiscard]] double widest_difference(const Scores& scores);
 
 /// Tables 8 to 11, with "table10-pairs" and "table11-pairs": p-values and Holm's correction. Empty where runs are
 /// missing.

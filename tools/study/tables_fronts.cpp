@@ -101,7 +101,7 @@ std::string timing_note(const Selection& selection) {
   for (const int count : threads) counts += fmt::format("{}{}", counts.empty() ? "" : " and ", count);
   const std::size_t machines = selection.results().machines.size();
   return fmt::format(
-      "Wall time with {} thread{} of the planner, each run alone on the machine{}.", counts,
+      "Wall time with {} thread{} of the planner, nothing else of the study beside it{}.", counts,
       threads.size() == 1 && *threads.begin() == 1 ? "" : "s",
       machines > 1 || threads.size() > 1 ? "; times of several machines or thread counts are mixed" : "");
 }

@@ -213,24 +213,12 @@ std::optional<Scores> scores(const Selection& selection, Criterion criterion, bo
       }
       const Records free = reached(all);
       const double failed = 1.0 - static_cast<double>(free.size()) / static_cast<double>(all.size());
-      row.push_back(kFailureWeight * failed + (free.empty() ? kFailureWeight : mean(values(free, key::kSlr))));
+      const double slr = free.empty() ? kFailureWeight : mean(values(free, key::kSlr));
+      row.push_back(kFailureWeight * failed + std::round(slr / kSameSlr) * kSameSlr);
     }
     result.push_back(std::move(row));
   }
   return result;
-}
-
-double widest_difference(const Scores& scores) {
-  double widest = 0.0;
-  for (std::size_t world = 0; world < scores.front().size(); ++world) {
-    double least = scores.front()[world], greatest = least;
-    for (const std::vector<double>& row : scores) {
-      least = std::min(least, row[world]);
-      greatest = std::max(greatest, row[world]);
-    }
-    widest = std::max(widest, greatest - least);
-  }
-  return widest;
 }
 
 std::vector<Table> rank_tables(const Selection& selection, bool blocked) {
@@ -248,11 +236,8 @@ std::vector<Table> rank_tables(const Selection& selection, bool blocked) {
     add_friedman(table, by_world, ids.ranks, blocked);
     if (ids.criterion == Criterion::kLength && blocked)
       table.notes.push_back("Who fails less often ranks first, by mean SLR where that is equal.");
-    if (ids.criterion == Criterion::kLength && !blocked)
-      table.notes.push_back(
-          fmt::format("What is ranked: mean SLRs that differ by {:.2g} at the most. No flight shows "
-                      "such differences; the ranks are here because the paper has them.",
-                      widest_difference(*found)));
+    if (ids.criterion == Criterion::kLength)
+      table.notes.push_back(fmt::format("Means that differ by less than {:g} count as equal.", kSameSlr));
     if (ids.criterion == Criterion::kTime) table.notes.push_back(timing_note(selection));
     ranks.push_back(std::move(table));
     const Lsd lsd = fisher_lsd(by_world);

@@ -31,13 +31,14 @@ Verdict hv(const Selection& s, std::string_view other, bool blocked) {
 }
 
 Verdict paths(const Selection& s, std::string_view other, const std::vector<std::string>& worlds,
-              const std::function<double(const Record&)>& value, const std::function<bool(const Record&)>& counts) {
+              const std::function<double(const Record&)>& value, const std::function<bool(const Record&)>& counts,
+              double resolution = 0.0) {
   std::vector<double> differences;
   for (const std::string& world : worlds) {
     const auto more = paired_differences(s.paths(kRetained, world), s.paths(other, world), value, counts);
     differences.insert(differences.end(), more.begin(), more.end());
   }
-  return judge(differences);
+  return judge(differences, resolution);
 }
 
 std::string names_of(const std::vector<std::string>& list) {
@@ -73,7 +74,7 @@ std::string_view to_string(Outcome outcome) {
   return "unknown";
 }
 
-Verdict judge(const std::vector<double>& differences) {
+Verdict judge(const std::vector<double>& differences, double resolution) {
   Verdict verdict;
   verdict.pairs = static_cast<int>(differences.size());
   if (differences.empty()) return verdict;
@@ -82,6 +83,10 @@ Verdict judge(const std::vector<double>& differences) {
   verdict.low = s.low;
   verdict.high = s.high;
   if (verdict.pairs < 2) return verdict;
+  if (std::abs(s.mean) < resolution) {
+    verdict.outcome = Outcome::kNoDifference;
+    return verdict;
+  }
   verdict.outcome = s.high < 0.0 ? Outcome::kBetter : s.low > 0.0 ? Outcome::kWorse : Outcome::kNoDifference;
   return verdict;
 }
@@ -103,7 +108,7 @@ std::vector<Verdict> compare(const Selection& s, std::string_view other) {
   const auto time = [](const Record& r) { return 1000.0 * r.measured.at(key::kPlanning); };
   return {hv(s, other, false),
           hv(s, other, true),
-          paths(s, other, {hardest_world(false)}, micrometres, has_reached),
+          paths(s, other, {hardest_world(false)}, micrometres, has_reached, kResolvedUm),
           paths(s, other, numbered_worlds(true), failure, always),
           paths(s, other, numbered_worlds(true), millimetres, has_reached),
           paths(s, other, {hardest_world(false)}, time, always),
@@ -140,8 +145,8 @@ Table verdict_table(const Selection& selection) {
     table.rows.push_back(std::move(row));
   }
   table.notes.push_back(
-      "Bold: the other one is better. Intervals are each for itself, without a correction for their "
-      "number.");
+      "Bold: the other one is better. Intervals are each for itself, without a correction for their number. Path "
+      "lengths in scenario 5 that differ by less than 1 µm on average count as equal.");
   table.notes.push_back(timing_note(selection));
   return table;
 }

@@ -15,15 +15,18 @@ namespace jink::study {
 enum class Outcome { kBetter, kWorse, kNoDifference, kUnknown };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 
+/// A path length in µm is resolved so far.
+inline constexpr double kResolvedUm = 1.0;
+
 /// By the 95 % interval (Student) of the mean of paired differences, of which smaller ones speak for the first: better
-/// or worse where the interval is all on one side of 0; no difference where it is not, or all differences are 0;
-/// unknown for fewer than two pairs.
+/// or worse where the interval is all on one side of 0; no difference where it is not, or the mean is nearer to 0 than
+/// `resolution`, below which a difference means nothing; unknown for fewer than two pairs.
 struct Verdict {
   Outcome outcome = Outcome::kUnknown;
   int pairs = 0;
   double mean = 0.0, low = 0.0, high = 0.0;  ///< of first minus second; 0 where there is no pair
 };
-[[nodiscard]] Verdict judge(const std::vector<double>& differences);
+[[nodiscard]] Verdict judge(const std::vector<double>& differences, double resolution = 0.0);
 
 /// A respect in which algorithms are compared.
 struct Respect {
