@@ -331,6 +331,7 @@ TEST(Figure, WhatMakesNoSenseIsRefusedInOneLine) {
 }
 
 /// PATH for as long as it lives.
+// NOLINTBEGIN(concurrency-mt-unsafe): a test has one thread.
 class Path {
  public:
   explicit Path(const std::filesystem::path& path) : before_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
@@ -341,6 +342,7 @@ class Path {
  private:
   std::string before_;
 };
+// NOLINTEND(concurrency-mt-unsafe)
 
 std::string failure(const std::filesystem::path& folder) {
   try {
