@@ -331,9 +331,14 @@ TEST(Figure, WhatMakesNoSenseIsRefusedInOneLine) {
 }
 
 /// PATH for as long as it lives.
+// NOLINTBEGIN(concurrency-mt-unsafe): a test has one thread.
 class Path {
  public:
-  explicit Path(const std::filesystem::path& path) : before_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
+  explicit Path(const std::filesystem::path& path) {
+    const char* const before = std::getenv("PATH");
+    if (before != nullptr) before_ = before;
+    ::setenv("PATH", path.c_str(), 1);
+  }
   ~Path() { ::setenv("PATH", before_.c_str(), 1); }
   Path(const Path&) = delete;
   Path& operator=(const Path&) = delete;
@@ -341,6 +346,7 @@ class Path {
  private:
   std::string before_;
 };
+// NOLINTEND(concurrency-mt-unsafe)
 
 std::string failure(const std::filesystem::path& folder) {
   try {

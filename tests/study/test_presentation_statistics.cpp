@@ -84,7 +84,8 @@ TEST(PaperStatistics, PairedComparisonsAreThePapersButForThreeMarks) {
       const std::string& b = kAlgorithms[static_cast<std::size_t>(pair.b)];
       EXPECT_EQ(std::abs(pair.difference), printed(table, a, b, "difference")) << table << ' ' << a << ' ' << b;
       const bool underlined = paper_number(table, a, b, "underlined") == "yes";
-      if (underlined != pair.lsd) contradictions.push_back(table + ' ' + a + ' ' + b);
+      if (underlined != pair.lsd)
+        contradictions.push_back(std::string(table).append(" ").append(a).append(" ").append(b));
     }
   }
   EXPECT_EQ(contradictions, (std::vector<std::string>{"table10 PMOMVO-4 PMOMVO-6", "table10 PMOMVO-8 PMOMVO-12",

@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <limits>
+#include <system_error>
 
 #include "tools/statistics.hpp"
 
@@ -83,7 +83,7 @@ std::string complaint(const std::string& said) {
 /// Runs gnuplot in a folder. Throws FigureError.
 void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   Pipe pipe;
-  if (pipe.end(0) < 0) refuse(id, fmt::format("no pipe to gnuplot: {}", std::strerror(errno)));
+  if (pipe.end(0) < 0) refuse(id, fmt::format("no pipe to gnuplot: {}", std::generic_category().message(errno)));
   // Without the user's own settings, so that the same figure looks the same everywhere.
   std::string program = "gnuplot", defaults = "-d", script = id + ".gp";
   std::array<char*, 4> arguments{program.data(), defaults.data(), script.data(), nullptr};
@@ -97,7 +97,7 @@ void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   const int failure = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) refuse(id, "gnuplot is not installed (Debian: gnuplot-nox; tools/setup.sh installs it)");
-  if (failure != 0) refuse(id, fmt::format("gnuplot cannot be run: {}", std::strerror(failure)));
+  if (failure != 0) refuse(id, fmt::format("gnuplot cannot be run: {}", std::generic_category().message(failure)));
   pipe.close_end(1);
   const std::string said = read_all(pipe.end(0));
   int status = 0;
@@ -132,7 +132,7 @@ Drawn draw(const Figure& figure, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   if (error) refuse(figure.id, fmt::format("cannot make {}: {}", folder.string(), error.message()));
   const auto file = [&](const char* ending) { return folder / (figure.id + ending); };
-  const Drawn drawn{file(".gp"), file(".dat"), file(".png"), file(".svg")};
+  Drawn drawn{file(".gp"), file(".dat"), file(".png"), file(".svg")};
   write(figure.id, drawn.data, data);
   write(figure.id, drawn.script, script);
   // A picture of before must not pass for one of now.
