@@ -123,6 +123,8 @@ TEST(TableName, IsThePapers) {
   EXPECT_EQ(table_name("table"), "table");
   EXPECT_EQ(table_name("harder-table03"), "harder-table03");
   EXPECT_EQ(table_name("table3b"), "table3b");
+  EXPECT_EQ(table_name("table07-flight-blocked"), "Table 7, flight blocked");
+  EXPECT_EQ(table_name("table-blocked"), "table-blocked");
 }
 
 TEST(RepeatedLabels, NeverHidesTheLastLabel) {

@@ -64,12 +64,12 @@ std::vector<std::string> with_slaves() {
 
 /// `sign` is -1 where larger is better.
 Claim compared(std::string claim, const char* first_name, const ByRun& first, const char* second_name,
-               const ByRun& second, double sign, double resolution = 0.0) {
+               const ByRun& second, double sign, double resolution = 0.0, const char* unit = "") {
   const Verdict v = judge(scaled(first.minus(second), sign), resolution);
   return {std::move(claim),
-          fmt::format("{:.5g} {} against {:.5g} {}: difference {:+.3g}, 95 % interval {:.3g} to {:.3g}", first.mean(),
-                      first_name, second.mean(), second_name, sign * v.mean, std::min(sign * v.low, sign * v.high),
-                      std::max(sign * v.low, sign * v.high)),
+          fmt::format("{:.5g}{} {} against {:.5g}{} {}: difference {:+.3g}, 95 % interval {:.3g} to {:.3g}",
+                      first.mean(), unit, first_name, second.mean(), unit, second_name, sign * v.mean,
+                      std::min(sign * v.low, sign * v.high), std::max(sign * v.low, sign * v.high)),
           v.outcome};
 }
 
@@ -99,13 +99,14 @@ Claim front_claim(const Selection& s) {
                   -1.0);
 }
 
-Claim against_momvo(const Selection& s, std::string text, const Value& value, double resolution = 0.0) {
+Claim against_momvo(const Selection& s, std::string text, const Value& value, const char* unit,
+                    double resolution = 0.0) {
   ByRun parallel, alone;
   for (const std::string& world : numbered_worlds(false)) {
     for (const std::string& algorithm : with_slaves()) parallel.add(s.paths(algorithm, world), value);
     alone.add(s.paths("momvo", world), value);
   }
-  return compared(std::move(text), "of PMOMVO", parallel, "of MOMVO", alone, 1.0, resolution);
+  return compared(std::move(text), "of PMOMVO", parallel, "of MOMVO", alone, 1.0, resolution, unit);
 }
 
 Claim fastest_claim(const Selection& s) {
@@ -139,8 +140,7 @@ Claim optimum_claim(const Selection& s) {
       greatest = std::max(greatest, mean(slr));
     }
   }
-  Claim claim{"The variants differ in path length by 1 to 2 % in Table 2's scenarios (Table 6)", "runs are missing",
-              Outcome::kUnknown};
+  Claim claim{"The variants differ in path length by 1 to 2 % (Table 6)", "runs are missing", Outcome::kUnknown};
   if (greatest <= 0.0) return claim;
   claim.finding =
       fmt::format("mean SLR − 1 of all variants and scenarios from {:.2g} to {:.2g}", least - 1.0, greatest - 1.0);
@@ -149,8 +149,8 @@ Claim optimum_claim(const Selection& s) {
 }
 
 Claim difference_claim(const Selection& s) {
-  Claim claim{"Path lengths differ significantly over the scenarios: the more slaves, the shorter (Tables 8 and 10)",
-              "runs are missing", Outcome::kUnknown};
+  Claim claim{"The more slaves, the shorter the paths, significantly (Tables 8, 10)", "runs are missing",
+              Outcome::kUnknown};
   const std::optional<Scores> found = scores(s, Criterion::kLength, false);
   if (!found) return claim;
   const Scores ranks = friedman_ranks(*found);
@@ -180,7 +180,7 @@ std::vector<double> size_means(const Selection& s, const std::string& algorithm,
 
 Claim sizes_claim(const Selection& s) {
   constexpr double kPaperRange = 0.022;  // Table 13: 22.7612 m to 22.2672 m
-  Claim claim{"Population and iterations change the path length little (Table 13: 2.2 % over all)", "runs are missing",
+  Claim claim{"Population and iterations change the path length little (Table 13)", "runs are missing",
               Outcome::kUnknown};
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const std::string& algorithm : own_algorithms()) {
@@ -191,15 +191,14 @@ Claim sizes_claim(const Selection& s) {
     }
   }
   if (greatest <= 0.0) return claim;
-  claim.finding = fmt::format("mean lengths from {:.6f} m to {:.6f} m, {:.5f} %", least, greatest,
+  claim.finding = fmt::format("mean lengths from {:.6f} m to {:.6f} m, {:.5f} %; the paper's span 2.2 %", least, greatest,
                               100.0 * (greatest / least - 1.0));
   claim.outcome = greatest / least - 1.0 <= kPaperRange ? Outcome::kBetter : Outcome::kWorse;
   return claim;
 }
 
 Claim effort_claim(const Selection& s) {
-  Claim claim{"More iterations and a larger population take longer, less so with slaves (Table 14)", "runs are missing",
-              Outcome::kUnknown};
+  Claim claim{"More iterations and universes cost less with slaves (Table 14)", "runs are missing", Outcome::kUnknown};
   const auto growth = [&](const std::string& algorithm) {
     const std::vector<double> times =
         size_means(s, algorithm, [](const Records& all) { return mean(measured(all, key::kPlanning)); });
@@ -215,21 +214,20 @@ Claim effort_claim(const Selection& s) {
 }
 
 Claim others_claim(const Selection& s) {
-  std::vector<std::string> not_beaten;
-  Outcome outcome = Outcome::kBetter;
+  std::map<Outcome, std::vector<std::string>> found;
   for (const char* name : {"mssa", "mogwo", "nsga2", "mopso"}) {
     const std::vector<Verdict> verdicts = compare(s, name);
-    for (const std::size_t i : {std::size_t{2}, std::size_t{5}}) {  // length and time in scenario 5
-      const Outcome one = verdicts[i].outcome;
-      if (one == Outcome::kBetter) continue;
-      not_beaten.push_back(fmt::format("{} in {} ({})", label_of(name), respects()[i].subject, to_string(one)));
-      if (one == Outcome::kWorse) outcome = Outcome::kWorse;
-      if (one == Outcome::kNoDifference && outcome == Outcome::kBetter) outcome = Outcome::kNoDifference;
-      if (one == Outcome::kUnknown && outcome != Outcome::kWorse) outcome = Outcome::kUnknown;
-    }
+    found[verdicts[2].outcome].push_back(label_of(name) + " in length");  // in scenario 5, as respects() has them
+    found[verdicts[5].outcome].push_back(label_of(name) + " in time");
   }
-  return {"PMOMVO-6 has shorter paths and less time than MSSA, MOGWO, NSGA-II and MOPSO (Table 15)",
-          not_beaten.empty() ? "so in all of them" : fmt::format("not so: {}", fmt::join(not_beaten, "; ")), outcome};
+  std::vector<std::string> parts;
+  for (const auto& [outcome, list] : found)
+    parts.push_back(fmt::format("{} {}: {}", to_string(outcome), outcome == Outcome::kNoDifference ? "to" : "than",
+                                fmt::join(list, ", ")));
+  Outcome whole = Outcome::kBetter;
+  for (const Outcome outcome : {Outcome::kUnknown, Outcome::kNoDifference, Outcome::kWorse})
+    if (found.count(outcome) > 0) whole = outcome;
+  return {"PMOMVO-6 beats four others in length and time (Table 15)", fmt::format("{}", fmt::join(parts, "; ")), whole};
 }
 
 std::string agreement(Outcome outcome) {
@@ -255,11 +253,11 @@ std::vector<Claim> judge_claims(const Selection& s) {
           slaves_claim(s),
           front_claim(s),
           optimum_claim(s),
-          against_momvo(s, "PMOMVO's paths are shorter than MOMVO's (Table 6), as excess over the straight line in µm",
-                        excess_um, kResolvedUm),
+          against_momvo(s, "PMOMVO's paths are shorter than MOMVO's (Table 6)", excess_um,
+                        " µm beyond the straight line", kResolvedUm),
           difference_claim(s),
           fastest_claim(s),
-          against_momvo(s, "PMOMVO plans faster than MOMVO (Table 7), in ms", planning_ms),
+          against_momvo(s, "PMOMVO plans faster than MOMVO (Table 7)", planning_ms, " ms"),
           sizes_claim(s),
           effort_claim(s),
           others_claim(s)};

@@ -47,11 +47,7 @@ std::string with_own_ids(const std::string& svg, const std::string& prefix) {
 }
 
 std::string figure_name(const std::string& id) {
-  constexpr std::string_view kStem = "figure";
-  if (!id.starts_with(kStem) || id.size() == kStem.size() ||
-      id.find_first_not_of("0123456789", kStem.size()) != std::string::npos)
-    return id;
-  return "Figure " + std::to_string(std::stoul(id.substr(kStem.size())));
+  return numbered_name(id, "figure", "Figure");
 }
 
 std::string cell_html(const Cell& cell, const char* element, bool number) {

@@ -172,13 +172,20 @@ std::string to_latex(const Table& table) {
   return out + "\\end{table}\n";
 }
 
+std::string numbered_name(const std::string& id, std::string_view stem, std::string_view shown) {
+  const std::size_t end = id.starts_with(stem) ? id.find_first_not_of("0123456789", stem.size()) : stem.size();
+  if (end == stem.size() || id.size() == stem.size() || (end != std::string::npos && id[end] != '-')) return id;
+  const std::string number = id.substr(stem.size(), end == std::string::npos ? end : end - stem.size());
+  const std::size_t digits = std::min(number.find_first_not_of('0'), number.size() - 1);
+  std::string name = fmt::format("{} {}", shown, number.substr(digits));
+  if (end == std::string::npos) return name;
+  name += ", " + id.substr(end + 1);
+  std::replace(name.begin(), name.end(), '-', ' ');
+  return name;
+}
+
 std::string table_name(const std::string& id) {
-  constexpr std::string_view kStem = "table";
-  if (!id.starts_with(kStem) || id.size() == kStem.size() ||
-      id.find_first_not_of("0123456789", kStem.size()) != std::string::npos)
-    return id;
-  const std::size_t digits = std::min(id.find_first_not_of('0', kStem.size()), id.size() - 1);
-  return "Table " + id.substr(digits);
+  return numbered_name(id, "table", "Table");
 }
 
 }  // namespace jink::study

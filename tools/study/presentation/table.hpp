@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace jink::study {
@@ -35,8 +36,10 @@ struct Table {
                                    ///< repeated where the form can show that the rows belong together
 };
 
-/// "Table 3" of the id "table03"; another id as it is ("harder-table03").
+/// "Table 3" of the id "table03", "Table 3, blocked" of "table03-blocked"; another id as it is ("harder-table03").
 [[nodiscard]] std::string table_name(const std::string& id);
+/// The same for any stem: ("figure08", "figure", "Figure").
+[[nodiscard]] std::string numbered_name(const std::string& id, std::string_view stem, std::string_view shown);
 
 /// How many of a row's labels are those of the row above and need not be shown again; never all of them.
 [[nodiscard]] std::size_t repeated_labels(const Table& table, std::size_t row);
