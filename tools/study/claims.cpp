@@ -99,14 +99,16 @@ Claim front_claim(const Selection& s) {
                   -1.0);
 }
 
-Claim against_momvo(const Selection& s, std::string text, const Value& value, const char* unit,
+Claim against_momvo(const Selection& s, std::string text, const Value& value, const char* unit, std::string about = {},
                     double resolution = 0.0) {
   ByRun parallel, alone;
   for (const std::string& world : numbered_worlds(false)) {
     for (const std::string& algorithm : with_slaves()) parallel.add(s.paths(algorithm, world), value);
     alone.add(s.paths("momvo", world), value);
   }
-  return compared(std::move(text), "of PMOMVO", parallel, "of MOMVO", alone, 1.0, resolution, unit);
+  Claim claim = compared(std::move(text), "with PMOMVO", parallel, "with MOMVO", alone, 1.0, resolution, unit);
+  claim.finding = std::move(about) + claim.finding;
+  return claim;
 }
 
 Claim fastest_claim(const Selection& s) {
@@ -191,8 +193,8 @@ Claim sizes_claim(const Selection& s) {
     }
   }
   if (greatest <= 0.0) return claim;
-  claim.finding = fmt::format("mean lengths from {:.6f} m to {:.6f} m, {:.5f} %; the paper's span 2.2 %", least, greatest,
-                              100.0 * (greatest / least - 1.0));
+  claim.finding = fmt::format("mean lengths from {:.6f} m to {:.6f} m, {:.5f} %; the paper's span 2.2 %", least,
+                              greatest, 100.0 * (greatest / least - 1.0));
   claim.outcome = greatest / least - 1.0 <= kPaperRange ? Outcome::kBetter : Outcome::kWorse;
   return claim;
 }
@@ -253,8 +255,8 @@ std::vector<Claim> judge_claims(const Selection& s) {
           slaves_claim(s),
           front_claim(s),
           optimum_claim(s),
-          against_momvo(s, "PMOMVO's paths are shorter than MOMVO's (Table 6)", excess_um,
-                        " µm beyond the straight line", kResolvedUm),
+          against_momvo(s, "PMOMVO's paths are shorter than MOMVO's (Table 6)", excess_um, " µm",
+                        "excess over the straight line: ", kResolvedUm),
           difference_claim(s),
           fastest_claim(s),
           against_momvo(s, "PMOMVO plans faster than MOMVO (Table 7)", planning_ms, " ms"),

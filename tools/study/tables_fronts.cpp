@@ -24,9 +24,9 @@ struct Measure {
 };
 
 constexpr std::array<Measure, 3> kMeasures{
-    {{"table03", key::kHv, "hypervolume (HV)", Direction::kLargerIsBetter, 4},
-     {"table04", key::kMs, "maximum spread (MS)", Direction::kLargerIsBetter, 4},
-     {"table05", key::kHrs, "hole relative size (HRS)", Direction::kSmallerIsBetter, 4}}};
+    {{"table03", key::kHv, "Hypervolume (HV)", Direction::kLargerIsBetter, 4},
+     {"table04", key::kMs, "Maximum spread (MS)", Direction::kLargerIsBetter, 4},
+     {"table05", key::kHrs, "Hole relative size (HRS)", Direction::kSmallerIsBetter, 4}}};
 
 Table front_table(const Selection& selection, const Measure& m, bool blocked) {
   Table table;
