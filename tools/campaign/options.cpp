@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/campaign/line_file.hpp"
 
@@ -57,7 +58,7 @@ void refuse_beside(const CLI::App& app, const char* mode, const std::vector<std:
 }
 
 std::string duration(double seconds) {
-  const auto whole_seconds = static_cast<long>(std::max(0.0, seconds) + 0.5);
+  const long whole_seconds = std::lround(std::max(0.0, seconds));
   if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
   if (whole_seconds < 3600) return fmt::format("{} min {:02} s", whole_seconds / 60, whole_seconds % 60);
   return fmt::format("{} h {:02} min", whole_seconds / 3600, whole_seconds / 60 % 60);

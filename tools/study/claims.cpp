@@ -219,8 +219,8 @@ Claim others_claim(const Selection& s) {
   std::map<Outcome, std::vector<std::string>> found;
   for (const char* name : {"mssa", "mogwo", "nsga2", "mopso"}) {
     const std::vector<Verdict> verdicts = compare(s, name);
-    found[verdicts[2].outcome].push_back(label_of(name) + " in length");  // in scenario 5, as respects() has them
-    found[verdicts[5].outcome].push_back(label_of(name) + " in time");
+    found[verdicts[kLengthRespect].outcome].push_back(label_of(name) + " in length");
+    found[verdicts[kTimeRespect].outcome].push_back(label_of(name) + " in time");
   }
   std::vector<std::string> parts;
   for (const auto& [outcome, list] : found)

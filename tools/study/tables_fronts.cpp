@@ -97,6 +97,7 @@ std::string timing_note(const Selection& selection) {
   std::set<int> threads;
   for (const auto& [number, record] : selection.results().runs)
     if (record.job.variant.timed()) threads.insert(static_cast<int>(record.measured.at(key::kThreads)));
+  if (threads.empty()) return "No run whose time is reported has been made yet.";
   std::string counts;
   for (const int count : threads) counts += fmt::format("{}{}", counts.empty() ? "" : " and ", count);
   const std::size_t machines = selection.results().machines.size();

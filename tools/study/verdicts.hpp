@@ -35,6 +35,8 @@ struct Respect {
   std::string unit;     ///< behind a number: " µm"
 };
 [[nodiscard]] std::vector<Respect> respects();
+/// Places of two of them: those of Table 15.
+inline constexpr std::size_t kLengthRespect = 2, kTimeRespect = 5;
 
 /// The retained algorithm against `other` in each of respects().
 [[nodiscard]] std::vector<Verdict> compare(const Selection& selection, std::string_view other);
