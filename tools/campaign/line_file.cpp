@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 namespace jink::campaign {
 namespace {
@@ -22,7 +22,7 @@ Json parse(const std::string& text) {
 }
 
 std::string system_error(const std::filesystem::path& file) {
-  return fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno));
+  return fmt::format("{}: cannot be written: {}", file.string(), std::generic_category().message(errno));
 }
 
 }  // namespace

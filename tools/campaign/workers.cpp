@@ -17,6 +17,7 @@ void Workers::run(int threads, const std::function<bool()>& step, const std::fun
   running_ = threads;
   failed_ = false;
   std::vector<std::jthread> workers;
+  workers.reserve(static_cast<std::size_t>(threads));
   for (int i = 0; i < threads; ++i) workers.emplace_back([&] { work(step); });
   const auto ended = [&] {
     std::unique_lock lock(mutex_);

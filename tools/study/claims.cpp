@@ -223,6 +223,7 @@ Claim others_claim(const Selection& s) {
     found[verdicts[kTimeRespect].outcome].push_back(label_of(name) + " in time");
   }
   std::vector<std::string> parts;
+  parts.reserve(found.size());
   for (const auto& [outcome, list] : found)
     parts.push_back(fmt::format("{} {}: {}", to_string(outcome), outcome == Outcome::kNoDifference ? "to" : "than",
                                 fmt::join(list, ", ")));

@@ -55,11 +55,9 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
   result.figure.title = "Pareto fronts at the first step in " + world_text(blocked);
   result.figure.columns = 2;
   result.caption = fmt::format(
-      "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent, "
-      "a "
-      "panel for each sharing rate l; the line is the reference front. Each algorithm is moved up by {} so that none "
-      "covers "
-      "another. MOMVO does not share and is shown at l = 0.",
+      "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent; "
+      "a panel for each sharing rate l, and the reference front as a line. Each algorithm is moved up by {} so that "
+      "none covers another. MOMVO does not share and is shown at l = 0.",
       step.station + 1, setting.planner.paper.waypoints, world_text(blocked), kApart);
   for (const int l : sharing_rates()) {
     Panel panel;
@@ -215,10 +213,9 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
   const std::vector<FrontStep>& steps = setting.steps_of(hardest_world(blocked));
   for (const FrontStep& step : steps) best += step.reference.hypervolume / static_cast<double>(steps.size());
   result.caption = fmt::format(
-      "Mean hypervolume that the front lacks to the reference fronts' {:.4f}, over evaluations and over wall time, "
-      "with "
-      "95 % intervals, at {} steps of {}; lower is better. All have fronts of at most {} members, so that something "
-      "always lacks. {}",
+      "Mean hypervolume that the front lacks to the reference fronts' {:.4f} with 95 % intervals, over evaluations and "
+      "over the median wall time, at {} steps of {}; lower is better. All have fronts of at most {} members, so that "
+      "something always lacks. {}",
       best, steps.size(), world_text(blocked), setting.planner.optimizer.archive, timing_note(selection));
   Panel by_evaluations, by_time;
   by_evaluations.x_label = "Evaluations";
@@ -228,7 +225,8 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
   for (const Algorithm& algorithm : algorithms()) {
     const Records records = selection.anytime(algorithm.name, hardest_world(blocked));
     if (records.empty()) continue;
-    Series over = series_of(algorithm.name, Kind::band), timed = over;
+    Series over = series_of(algorithm.name, Kind::band);
+    Series timed = over;
     const std::size_t count = records.front()->series.at(key::kHvAt).size();
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<double> lacking, at;
@@ -237,7 +235,7 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
         at.push_back(r->series.at(key::kEvaluationsAt).at(i));
       }
       add_mean(over, mean(at), lacking);
-      add_mean(timed, 1000.0 * mean(measured(records, key::seconds_at(i))), lacking);
+      add_mean(timed, 1000.0 * summary(measured(records, key::seconds_at(i))).median, lacking);
     }
     for (Series* series : {&over, &timed})
       for (std::vector<double>* edge : {&series->y, &series->low, &series->high})

@@ -138,6 +138,7 @@ std::vector<int> blocked_stations(const World& world, const planner::PaperSettin
   }
   std::sort(found.begin(), found.end());
   std::vector<int> stations;
+  stations.reserve(kFrontSteps);
   for (std::size_t i = 0; i < kFrontSteps; ++i) stations.push_back(found[i].second);
   std::sort(stations.begin(), stations.end());
   return stations;
@@ -170,8 +171,9 @@ ReferenceFront search_reference(const planner::Problem& problem) {
     sort_by_first(samples);
   }
   ReferenceFront reference;
-  std::vector<Point2> all;
   const std::vector<Sample> front = non_dominated(samples);
+  std::vector<Point2> all;
+  all.reserve(front.size());
   for (const Sample& s : front) all.push_back(s.f);
   reference.bounds = planner::front_bounds(all);
   for (Point2& p : all) p = normal(p, reference);
@@ -182,6 +184,7 @@ ReferenceFront search_reference(const planner::Problem& problem) {
 
 Indicators indicators(const std::vector<Point2>& front, const ReferenceFront& reference) {
   std::vector<Point2> scaled;
+  scaled.reserve(front.size());
   for (const Point2& p : front) scaled.push_back(normal(p, reference));
   return {planner::hypervolume(scaled, kReferencePoint), planner::maximum_spread(front, reference.points),
           planner::hole_relative_size(scaled)};

@@ -108,7 +108,7 @@ Json summary_json(const Selection& s, const ReportParts& parts, const fs::path& 
 }  // namespace
 
 void require_gnuplot() {
-  const char* const path = std::getenv("PATH");
+  const char* const path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe)
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');)
     if (::access((fs::path(folder) / "gnuplot").c_str(), X_OK) == 0) return;

@@ -80,14 +80,13 @@ void what_was_run(Sections& out, const Selection& s, const Setting& setting) {
   out.text(
       "Every algorithm solves the same problem objects with the same number of evaluations (population times "
       "iterations) and gives a front of at most the same size. Run number k of every variant has the same seed, so "
-      "runs "
-      "are compared in pairs. All results but times are the same bit by bit for any number of threads. Runs whose time "
-      "is reported are made one at a time, after all others, with nothing else of the study beside them.");
+      "runs are compared in pairs. All results but times are the same bit by bit for any number of threads. Runs "
+      "whose time is reported are made one at a time, after all others, with nothing else of the study beside them.");
   out.text(
-      "The **blocked** worlds are the harder version of each experiment: start, target and number of obstacles of the "
-      "paper's scenario, but obstacles of 0.5 m radius timed to meet the straight flight one after the other, every "
-      "second one in its way and the others just beside it. Each run has another world, drawn from the seed, the same "
-      "for all algorithms; the three of Table 12 are the same in all runs. They are in the folder `worlds`.");
+      "The **blocked** worlds are the harder version of each experiment: start, target and number of obstacles of "
+      "the paper's scenario, but obstacles of 0.5 m radius timed to meet the straight flight one after the other, "
+      "every second one in its way and the others just beside it. Each run has another world, drawn from the seed, "
+      "the same for all algorithms; the three of Table 12 are the same in all runs. They are in the folder `worlds`.");
   std::vector<std::string> at;
   for (const bool blocked : {false, true}) {
     std::vector<std::string> stations;
@@ -130,6 +129,7 @@ std::vector<std::string> doubtful_numbers() {
       points.push_back(fmt::format("{} ({}): {}", n.where, n.printed, n.note));
   }
   std::vector<std::string> counts;
+  counts.reserve(deviations.size());
   for (const auto& [table, count] : deviations)
     counts.push_back(fmt::format("{} in {}", count, table_name(std::string(table))));
   if (!counts.empty())
@@ -141,21 +141,23 @@ std::vector<std::string> doubtful_numbers() {
 
 void what_cannot_be(Sections& out) {
   out.begin("What of the paper cannot be reproduced");
+  // NOLINTBEGIN(bugprone-suspicious-missing-comma): sentences longer than a line
   out.list(
       {"Obstacle radii, vehicle size, cruise speed, time step, number of waypoints, the steering limit, the penalty, "
-       "the "
-       "archive's size and the width of a narrow pass are not given. Ours are in `planner.yaml` beside this page, and "
-       "obstacles have 0.5 m.",
-       "With the printed positions and speeds the straight flight is free in all five scenarios of Table 2, so that "
-       "the "
-       "shortest path is the straight line and SLR 1. A mean SLR of 1.02, as the paper has, is then a search that has "
-       "not ended, and says nothing about avoidance. Hence the blocked worlds.",
+       "the archive's size and the width of a narrow pass are not given. Ours are in `planner.yaml` beside this "
+       "page, and obstacles have 0.5 m.",
+       "With the printed positions and speeds, obstacles of 0.5 m and our cruise speed the straight flight is free in "
+       "all five scenarios of Table 2, so that the shortest path is the straight line and SLR 1. A mean SLR of 1.02, "
+       "as "
+       "the paper has, is then a search that has not ended, and the scenarios say nothing of avoidance. Hence the "
+       "blocked worlds.",
        "The paper's flight time FT is hundreds of seconds for 12 to 22 m: it is for the most part the run time of a "
        "MATLAB program. Planning time and flown time are apart here.",
-       "The sharing rates are {0, 1, 3, 7, 9} in the paper's text and {0, 1, 3, 4, 9} in its tables: all are run. One "
-       "speed of scenario 2 is printed `[3- 3 1]` and read as [3 -3 1].",
+       "The sharing rates are {0, 1, 3, 7, 9} in the paper's text and {0, 1, 3, 4, 9} in its tables: all are run. "
+       "One speed of scenario 2 is printed `[3- 3 1]` and read as [3 -3 1].",
        "Reference point and normalisation of HV are not given. Ours are stated at Table 3.",
        "Equations (5)-(7), (8), (11)-(14) and (18) are implemented as corrected in `docs/planner.md`."});
+  // NOLINTEND(bugprone-suspicious-missing-comma)
   out.text("Numbers in the paper's tables that cannot be as printed, by arithmetic alone:");
   out.list(doubtful_numbers());
 }
@@ -175,12 +177,10 @@ std::vector<std::string> abstract_of(const Selection& s, const ReportParts& part
   };
   std::vector<std::string> paragraphs{fmt::format(
       "Section 5 of [Paper], \"Parallel Multiobjective Multiverse Optimizer for Path Planning of Unmanned Aerial "
-      "Vehicles in a "
-      "Dynamic Environment with Moving Obstacles\", again, with {} runs of each variant: all its tables and figures, "
-      "the same on worlds "
-      "whose "
-      "straight line is blocked, and hypervolume during the search. Of {} statements of the paper that were checked, "
-      "these runs agree with {}, do not agree with {}, and show neither for {}{}.",
+      "Vehicles in a Dynamic Environment with Moving Obstacles\", again, with {} runs of each variant: all its "
+      "tables and figures, the same on worlds whose straight line is blocked, and hypervolume during the search. Of "
+      "{} statements of the paper that were checked, these runs agree with {}, do not agree with {}, and show "
+      "neither for {}{}.",
       s.settings().runs, parts.claims.size(), count(Outcome::kBetter), count(Outcome::kWorse),
       count(Outcome::kNoDifference),
       count(Outcome::kUnknown) == 0 ? "" : fmt::format("; {} could not be judged", count(Outcome::kUnknown)))};
@@ -193,9 +193,8 @@ void harder_worlds(Sections& out) {
   out.begin("The same where the straight line is blocked");
   out.text(
       "Here a path may fail: problem (16) is solved waypoint by waypoint, and a step may end where no next one is "
-      "free. "
-      "Lengths and flight times are of the paths that reach; how many do stands beside them. What jink flies by is not "
-      "this way of planning but its horizon planner, which the arena tests (`docs/arena.md`).");
+      "free. Lengths and flight times are of the paths that reach; how many do stands beside them. What jink flies "
+      "by is not this way of planning but its horizon planner, which the arena tests (`docs/arena.md`).");
   out.tables({"success"});
   out.begin("Fronts", 2);
   out.tables({"table03", "table04", "table05"}, true);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "tools/campaign/settings_text.hpp"
@@ -41,7 +42,12 @@ struct Variant {
   int iterations = 0;
 
   bool operator==(const Variant&) const = default;
-  auto operator<=>(const Variant&) const = default;
+  bool operator<(const Variant& other) const {
+    const auto tied = [](const Variant& v) {
+      return std::tie(v.kind, v.algorithm, v.world, v.sharing, v.population, v.iterations);
+    };
+    return tied(*this) < tied(other);
+  }
 
   /// Whether its wall time is reported: such a run is made alone, on all threads of the planner.
   [[nodiscard]] bool timed() const;

@@ -89,6 +89,7 @@ double statistic(const std::vector<double>& sample, std::string_view which, Dire
 
 std::vector<Table> front_tables(const Selection& selection, bool blocked) {
   std::vector<Table> tables;
+  tables.reserve(kMeasures.size());
   for (const Measure& m : kMeasures) tables.push_back(front_table(selection, m, blocked));
   return tables;
 }
