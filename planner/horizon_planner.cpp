@@ -7,9 +7,11 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "planner/manoeuvres.hpp"
 #include "planner/obstacle_motion.hpp"
+#include "planner/pmomvo.hpp"
 #include "planner/topsis.hpp"
 
 namespace jink::planner {
@@ -101,11 +103,13 @@ std::vector<double> start_solutions(const PathProblem& problem, const PathReques
   return initial;
 }
 
-HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer)
-    : settings_(settings),
-      problem_(settings),
-      emergency_(settings.for_emergencies()),
-      optimizer_(sized(optimizer, settings), problem_.dimension(), problem_.objectives()) {}
+HorizonPlanner::HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer,
+                               const MakeOptimizer& make)
+    : settings_(settings), problem_(settings), emergency_(settings.for_emergencies()) {
+  const OptimizerSettings size = sized(optimizer, settings);
+  const auto [d, n] = std::pair(problem_.dimension(), problem_.objectives());
+  optimizer_ = make ? make(size, d, n) : std::make_unique<Pmomvo>(size, d, n);
+}
 
 Plan HorizonPlanner::plan(const PathRequest& request, const TimedPath& previous, std::uint64_t seed,
                           std::uint64_t number, const Budget& budget, WorkerPool& pool) {
@@ -177,14 +181,14 @@ Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, co
   Budget affordable = budget;
   affordable.generations = affordable_generations(budget);
   const auto begun = std::chrono::steady_clock::now();
-  const Front& front = optimizer_.run(problem, initial_, random.seed, random.stream, affordable, pool);
+  const Front& front = optimizer_->run(problem, initial_, random.seed, random.stream, affordable, pool);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  pace_ = took.count() / optimizer_.report().generations;
+  pace_ = took.count() / optimizer_->report().generations;
   Plan plan = choose(problem, request, front);
-  plan.evaluations = optimizer_.report().evaluations;
-  plan.generations = optimizer_.report().generations;
+  plan.evaluations = optimizer_->report().evaluations;
+  plan.generations = optimizer_->report().generations;
   plan.schedule = affordable.generations;
-  plan.deadline_reached = optimizer_.report().deadline_reached;
+  plan.deadline_reached = optimizer_->report().deadline_reached;
   for (const Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
   return plan;
 }

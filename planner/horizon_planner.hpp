@@ -4,13 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "planner/budget.hpp"
+#include "planner/optimizer.hpp"
 #include "planner/path_problem.hpp"
 #include "planner/plan.hpp"
-#include "planner/pmomvo.hpp"
 #include "planner/settings.hpp"
 #include "planner/worker_pool.hpp"
 
@@ -26,9 +27,11 @@ namespace jink::planner {
 /// given, the plan says how far its searches went, and repeat() makes it again from that.
 class HorizonPlanner {
  public:
-  /// `optimizer` gives the operators; its size (slaves, sharing, population, iterations) is that of `settings`. Throws
-  /// std::invalid_argument for settings that PathProblem or Pmomvo refuses.
-  explicit HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer = {});
+  /// `optimizer` gives the operators; its size (slaves, sharing, population, iterations) is that of `settings`. `make`
+  /// makes the optimizer, for problems of three objectives. Throws std::invalid_argument for settings that PathProblem
+  /// or the optimizer refuses.
+  explicit HorizonPlanner(const HorizonSettings& settings, const OptimizerSettings& optimizer = {},
+                          const MakeOptimizer& make = {});
 
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
   /// empty: none. It seeds the search, and it is kept where it is still free and a new plan is not clearly better.
@@ -70,7 +73,7 @@ class HorizonPlanner {
   HorizonSettings settings_;
   PathProblem problem_;
   PathProblem emergency_;  // the same with a harder acceleration
-  Pmomvo optimizer_;
+  std::unique_ptr<Optimizer> optimizer_;
   std::vector<double> initial_;
   double pace_ = 0.0;  // s per generation, of the plan before; 0: not known
 };

@@ -93,7 +93,7 @@ Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint6
 }  // namespace
 
 Plan plan_open_loop(const HorizonSettings& settings, const OptimizerSettings& optimizer, const OpenLoopRequest& request,
-                    std::uint64_t seed, const Budget& budget, WorkerPool& pool) {
+                    std::uint64_t seed, const Budget& budget, WorkerPool& pool, const MakeOptimizer& make) {
   if (start_blocked(request.path.position, request.path.vehicle.radius, request.path.tracks, request.path.paths)) {
     Plan plan;
     plan.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
@@ -101,10 +101,10 @@ Plan plan_open_loop(const HorizonSettings& settings, const OptimizerSettings& op
     plan.status = PlanStatus::kStartBlocked;
     return plan;
   }
-  HorizonPlanner patient(for_shortest(settings), optimizer);
+  HorizonPlanner patient(for_shortest(settings), optimizer, make);
   Plan plan = attempt(patient, request, seed, budget, pool);
   if (plan.status == PlanStatus::kReaches || plan.status == PlanStatus::kInvalid || budget.expired()) return plan;
-  HorizonPlanner eager(settings, optimizer);
+  HorizonPlanner eager(settings, optimizer, make);
   Plan other = attempt(eager, request, seed, budget, pool);
   const auto worth = [&](const Plan& p) {
     const double left = (p.path.back().position - request.path.target).norm();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "planner/budget.hpp"
+#include "planner/optimizer.hpp"
 #include "planner/path_problem.hpp"
 #include "planner/plan.hpp"
 #include "planner/settings.hpp"
@@ -25,8 +26,8 @@ struct OpenLoopRequest {
 /// that comes nearer. `budget` is that of each plan, its deadline that of all.
 ///
 /// The finished path is verified: kReaches only where all of it is free and it ends at the target within the time
-/// limit. Throws std::invalid_argument for settings that HorizonPlanner refuses.
+/// limit. `make` and what is thrown: as for HorizonPlanner.
 Plan plan_open_loop(const HorizonSettings& settings, const OptimizerSettings& optimizer, const OpenLoopRequest& request,
-                    std::uint64_t seed, const Budget& budget, WorkerPool& pool);
+                    std::uint64_t seed, const Budget& budget, WorkerPool& pool, const MakeOptimizer& make = {});
 
 }  // namespace jink::planner

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "planner/budget.hpp"
 #include "planner/pareto.hpp"
 #include "planner/problem.hpp"
+#include "planner/settings.hpp"
 #include "planner/worker_pool.hpp"
 
 namespace jink::planner {
@@ -47,5 +50,9 @@ class Optimizer {
   /// Of the last run.
   [[nodiscard]] virtual const RunReport& report() const = 0;
 };
+
+/// Makes an optimizer for problems of one shape. Empty where one is asked for: PMOMVO.
+using MakeOptimizer =
+    std::function<std::unique_ptr<Optimizer>(const OptimizerSettings& settings, int dimension, int objectives)>;
 
 }  // namespace jink::planner

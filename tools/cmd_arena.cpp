@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -18,6 +16,7 @@
 #include "tools/arena/page.hpp"
 #include "tools/arena/pilots.hpp"
 #include "tools/arena/tiers.hpp"
+#include "tools/campaign/options.hpp"
 #include "tools/command_line.hpp"
 
 namespace jink::tools {
@@ -25,10 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostRuns = 1000000;
-constexpr int kMostShards = 100000;
-constexpr std::size_t kMostCommands = 10;         // of failed flights that are printed
-constexpr std::chrono::seconds kPlainPeriod{15};  // between lines where there is no terminal
+constexpr std::size_t kMostCommands = 10;  // of failed flights that are printed
 
 constexpr const char* kFooter =
     "Writes into --out: flights.jsonl (a line for each flight as it ends), flights.csv, table.csv, table.json, "
@@ -68,24 +64,6 @@ std::vector<std::string> chosen(const char* option, const std::string& text, std
   return result;
 }
 
-template <class Number>
-std::optional<Number> whole(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-arena::Shard shard_of(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  const int number = whole<int>(std::string_view(text).substr(0, slash)).value_or(0);
-  int of = 0;
-  if (slash != std::string::npos) of = whole<int>(std::string_view(text).substr(slash + 1)).value_or(0);
-  if (of < 1 || of > kMostShards || number < 1 || number > of)
-    throw UsageError(fmt::format("--shard: '{}' is not K/N with 1 <= K <= N <= {}", text, kMostShards));
-  return {number, of};
-}
-
 arena::CampaignSettings settings_of(const ArenaOptions& options, const config::Settings& planner) {
   arena::CampaignSettings s;
   s.version = JINK_VERSION;
@@ -95,52 +73,15 @@ arena::CampaignSettings settings_of(const ArenaOptions& options, const config::S
   s.tiers = chosen("--tiers", options.tiers, arena::tiers());
   s.runs = options.runs;
   s.oracle = options.oracle == "on";
-  s.shard = shard_of(options.shard);
+  s.shard = campaign::shard_of(options.shard);
   s.parameters = config::list_settings(planner);
   return s;
 }
 
-std::string duration(double seconds) {
-  const auto whole_seconds = static_cast<long>(std::max(0.0, seconds) + 0.5);
-  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
-  if (whole_seconds < 3600) return fmt::format("{} min {:02} s", whole_seconds / 60, whole_seconds % 60);
-  return fmt::format("{} h {:02} min", whole_seconds / 3600, whole_seconds / 60 % 60);
+campaign::Progress progress_of(const arena::Progress& p) {
+  return {static_cast<double>(p.done), static_cast<double>(p.total), static_cast<double>(p.flown),
+          fmt::format("{} of {} flights, {} not reached ({} hit)", p.done, p.total, p.failed, p.hit)};
 }
-
-/// The live line, or now and then a plain one.
-class ProgressPrinter {
- public:
-  explicit ProgressPrinter(const Printer& printer) : printer_(printer) {}
-
-  void operator()(const arena::Progress& p) {
-    const auto now = Clock::now();
-    if (printer_.terminal()) {
-      printer_.live(text(p, now));
-    } else if (now - last_ >= kPlainPeriod && p.done < p.total) {
-      printer_.line(text(p, now));
-      last_ = now;
-    }
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t kBar = 24;
-
-  [[nodiscard]] std::string text(const arena::Progress& p, Clock::time_point now) const {
-    const double elapsed = std::chrono::duration<double>(now - begun_).count();
-    const double share = p.total == 0 ? 1.0 : static_cast<double>(p.done) / static_cast<double>(p.total);
-    const auto full = static_cast<std::size_t>(share * kBar);
-    const std::string left = p.flown == 0
-                                 ? ""
-                                 : fmt::format(", {} left", duration(elapsed * static_cast<double>(p.total - p.done) /
-                                                                     static_cast<double>(p.flown)));
-    return fmt::format("[{:{}}] {:3.0f} %  {} of {} flights, {} not reached ({} hit), {}{}", std::string(full, '#'),
-                       kBar, 100.0 * share, p.done, p.total, p.failed, p.hit, duration(elapsed), left);
-  }
-
-  const Printer& printer_;
-  Clock::time_point begun_ = Clock::now(), last_ = begun_;
-};
 
 void tell_failures(const arena::Summary& summary, const fs::path& out, const Printer& printer) {
   if (summary.failures.empty()) return;
@@ -165,30 +106,14 @@ void conclude(const arena::Results& results, const ArenaOptions& options, const 
   write_json(options.common.json, arena::summary_json(results, summary, out));
 }
 
-void make_folder(const fs::path& out) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error || !fs::is_directory(out))
-    throw UsageError(fmt::format("--out: '{}' cannot be made a folder", out.string()));
-}
-
 /// What an earlier run left, or nothing yet. Throws UsageError where it is in the way.
 arena::Results begin(const arena::CampaignSettings& settings, const ArenaOptions& options, const Printer& printer) {
   const fs::path file = arena::results_path(options.out);
   arena::Results results;
   results.settings = settings;
-  if (!arena::has_begun(file)) {
-    if (options.resume) printer.line(fmt::format("{} holds no campaign: this is the beginning of one", options.out));
-    return results;
-  }
-  if (!options.resume)
-    throw UsageError(fmt::format(
-        "--out: '{}' holds a campaign; --resume goes on with it, another folder begins a new one", options.out));
+  if (!campaign::goes_on(file, options.out, options.resume, printer)) return results;
   arena::Results earlier = arena::read_results(file);
-  const auto differ = arena::differences(earlier.settings, options.out, settings, "this call");
-  if (!differ.empty())
-    throw UsageError(
-        fmt::format("--resume: '{}' was begun with other settings: {}", options.out, fmt::join(differ, "; ")));
+  campaign::require_same(arena::differences(earlier.settings, options.out, settings, "this call"), options.out);
   printer.line(fmt::format("going on with {} flights of an earlier run{}", earlier.flights.size(),
                            earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
   return earlier;
@@ -198,20 +123,20 @@ int run_campaign(const ArenaOptions& options, const Printer& printer) {
   const config::Settings planner = options.common.settings();
   const arena::CampaignSettings settings = settings_of(options, planner);
   arena::Results results = begin(settings, options, printer);
-  make_folder(options.out);
+  campaign::make_folder(options.out);
   arena::ResultsFile file(arena::results_path(options.out), results);
   arena::write_whole(fs::path(options.out) / "planner.yaml", arena::parameters_yaml(settings.parameters));
   printer.line(fmt::format("seed {}: {} flights on {} threads, results in {}", settings.seed,
                            arena::jobs_of(settings).size(), options.common.thread_count(), options.out));
   catch_signals();
-  ProgressPrinter progress(printer);
+  campaign::ProgressPrinter progress(printer);
   arena::CampaignOptions campaign;
   campaign.out = options.out;
   campaign.settings = planner;
   campaign.threads = options.common.thread_count();
   campaign.logs = options.logs == "on";
   campaign.interrupted = interrupted;
-  campaign.on_progress = [&](const arena::Progress& p) { progress(p); };
+  campaign.on_progress = [&](const arena::Progress& p) { progress(progress_of(p)); };
   const bool complete = arena::fly_campaign(results, file, campaign);
   printer.line("");
   conclude(results, options, printer);
@@ -235,7 +160,7 @@ int run_merge(const ArenaOptions& options, const Printer& printer) {
     throw UsageError(fmt::format("--out: '{}' holds a campaign; merge into another folder", options.out));
   const std::vector<fs::path> folders(options.merge.begin(), options.merge.end());
   const arena::Results results = arena::merge_results(folders);
-  make_folder(options.out);
+  campaign::make_folder(options.out);
   for (const fs::path& folder : folders) copy_failures(folder, options.out);
   arena::write_whole(fs::path(options.out) / "planner.yaml", arena::parameters_yaml(results.settings.parameters));
   conclude(results, options, printer);
@@ -250,8 +175,9 @@ int run_merge(const ArenaOptions& options, const Printer& printer) {
 int run_write(const ArenaOptions& options, const Printer& printer) {
   const std::string& world = options.write.front();
   const std::size_t colon = world.find(':');
-  const auto seed =
-      colon == std::string::npos ? std::nullopt : whole<std::uint64_t>(std::string_view(world).substr(colon + 1));
+  const auto seed = colon == std::string::npos
+                        ? std::nullopt
+                        : campaign::whole<std::uint64_t>(std::string_view(world).substr(colon + 1));
   if (!seed) throw UsageError(fmt::format("--write: '{}' is not FAMILY:SEED with a seed from 0 to 2^64 - 1", world));
   const auto families = chosen("--write", world.substr(0, colon), sim::world_families());
   const auto tiers = chosen("--tiers", options.tiers, arena::tiers());
@@ -269,12 +195,10 @@ void refuse_useless(const CLI::App& app) {
   std::vector<std::string> useless{"--families", "--pilots", "--runs",    "--resume", "--shard", "--oracle",
                                    "--logs",     "--seed",   "--threads", "--config", "--set"};
   const char* const mode = app.count("--merge") > 0 ? "--merge" : "--write";
-  if (app.count(mode) == 0) return;
   const bool merges = mode == std::string_view("--merge");
   for (const char* name : merges ? std::array{"--tiers", "--write"} : std::array{"--out", "--json"})
     useless.emplace_back(name);
-  for (const std::string& name : useless)
-    if (app.count(name) > 0) throw UsageError(fmt::format("{}: has no effect beside {}", name, mode));
+  campaign::refuse_beside(app, mode, useless);
 }
 
 int run(const ArenaOptions& options) {
@@ -302,7 +226,7 @@ Subcommand add_arena(CLI::App& jink) {
   app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
       ->capture_default_str();
   app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
-      ->check(CLI::Range(1, kMostRuns))
+      ->check(CLI::Range(1, campaign::kMostRuns))
       ->capture_default_str();
   app->add_option("--out", options->out, "folder for the results")->capture_default_str();
   app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
@@ -318,7 +242,7 @@ Subcommand add_arena(CLI::App& jink) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   app->add_option("--merge", options->merge, "put the results in these folders together into --out")
-      ->expected(1, kMostShards);
+      ->expected(1, campaign::kMostShards);
   app->add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
       ->expected(2);
   options->common.add_to(*app);

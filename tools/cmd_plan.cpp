@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "config/scenario.hpp"
 #include "planner/indicators.hpp"
@@ -12,6 +14,7 @@
 #include "planner/paper_planner.hpp"
 #include "sim/known_world.hpp"
 #include "tools/command_line.hpp"
+#include "tools/study/algorithms/algorithms.hpp"
 #include "tools/summaries.hpp"
 
 namespace jink::tools {
@@ -44,11 +47,24 @@ Knobs knobs(config::Settings& s, bool paper) {
   return {s.horizon.slaves, s.horizon.sharing, s.horizon.population, s.horizon.generations, s.horizon.waypoints};
 }
 
-void apply(const PlanOptions& options, Knobs k) {
-  if (options.algorithm == "momvo") {
-    k.slaves = 1;
-    k.sharing = 0;
+/// pmomvo takes its slaves and sharing as configured; of the others PMOMVO-m alone shares.
+void apply_algorithm(const PlanOptions& options, Knobs k) {
+  const study::Algorithm* algorithm = study::find_algorithm(options.algorithm);
+  if (algorithm == nullptr) return;
+  if (options.slaves > 0) {
+    throw UsageError(fmt::format("--slaves: not with --algorithm {}, only with pmomvo", options.algorithm));
   }
+  k.slaves = algorithm->slaves;
+  if (algorithm->slaves > 1) return;
+  if (options.sharing >= 0) {
+    throw UsageError(
+        fmt::format("--sharing: not with --algorithm {}, only with pmomvo and pmomvo-M", options.algorithm));
+  }
+  k.sharing = 0;
+}
+
+void apply(const PlanOptions& options, Knobs k) {
+  apply_algorithm(options, k);
   if (options.slaves > 0) k.slaves = options.slaves;
   if (options.sharing >= 0) k.sharing = options.sharing;
   if (options.population > 0) k.population = options.population;
@@ -73,6 +89,7 @@ planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& 
           ? std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                    std::chrono::duration<double, std::milli>(options.deadline_ms))
           : planner::Budget::Time::max();
+  const study::Algorithm* algorithm = study::find_algorithm(options.algorithm);
   if (options.mode == "paper") {
     const planner::PaperRequest request{scenario.start,   scenario.target,     world.volume,
                                         scenario.vehicle, world.tracks,        settings.optimizer,
@@ -80,10 +97,13 @@ planner::Plan plan_scenario(const PlanOptions& options, const config::Scenario& 
     if (planner::effective_axis(request) != settings.paper.axis) {
       printer.line("note: the mission is steep in world X, so the waypoints are placed along the path's own axis");
     }
-    return planner::plan_paper(request, pool);
+    if (algorithm == nullptr) return planner::plan_paper(request, pool);
+    const auto optimizer = algorithm->make(settings.optimizer, 2, 2);
+    return planner::plan_paper(request, *optimizer, pool);
   }
   return planner::plan_open_loop(settings.horizon, settings.optimizer, world.open_loop, options.common.seed,
-                                 {settings.horizon.generations, deadline}, pool);
+                                 {settings.horizon.generations, deadline}, pool,
+                                 algorithm == nullptr ? planner::MakeOptimizer() : algorithm->make);
 }
 
 std::string outcome_of(const planner::Plan& plan) {
@@ -152,6 +172,12 @@ int run(PlanOptions options) {
   return outcome == "reached" ? kExitReached : kExitFailed;
 }
 
+std::vector<std::string> algorithm_names() {
+  std::vector<std::string> names{"pmomvo"};
+  for (const study::Algorithm& algorithm : study::algorithms()) names.emplace_back(algorithm.name);
+  return names;
+}
+
 }  // namespace
 
 Subcommand add_plan(CLI::App& jink) {
@@ -161,12 +187,15 @@ Subcommand add_plan(CLI::App& jink) {
   app->add_option("--mode", options->mode, "horizon: the remaining path at once; paper: one waypoint after the other")
       ->check(CLI::IsMember({"paper", "horizon"}))
       ->capture_default_str();
-  app->add_option("--algorithm", options->algorithm, "pmomvo, or momvo (one slave, no sharing)")
-      ->check(CLI::IsMember({"pmomvo", "momvo"}))
+  app->add_option(
+         "--algorithm", options->algorithm,
+         "pmomvo takes --slaves and --sharing, pmomvo-M has M slaves; the others are those it is compared with")
+      ->check(CLI::IsMember(algorithm_names()))
       ->capture_default_str();
   app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->check(CLI::Range(1, 64));
   app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")->check(CLI::Range(0, 1000));
-  app->add_option("--population", options->population, "universes of all slaves together, 1 to 100000")
+  app->add_option("--population", options->population,
+                  "universes of all slaves together, or the population, 1 to 100000")
       ->check(CLI::Range(1, 100000));
   app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")
       ->check(CLI::Range(1, 1000000));

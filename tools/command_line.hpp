@@ -112,5 +112,6 @@ Subcommand add_doctor(CLI::App& jink);
 Subcommand add_report(CLI::App& jink);
 Subcommand add_export(CLI::App& jink);
 Subcommand add_arena(CLI::App& jink);
+Subcommand add_study(CLI::App& jink);
 
 }  // namespace jink::tools

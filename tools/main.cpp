@@ -30,8 +30,9 @@ int run(int argc, char** argv) {
   jink.footer(kFooter);
   jink.set_version_flag("--version", std::string("jink ") + JINK_VERSION);
   jink.require_subcommand(1);
-  const std::vector<Subcommand> commands{add_plan(jink),   add_replay(jink), add_sim(jink),    add_fly(jink),
-                                         add_doctor(jink), add_report(jink), add_export(jink), add_arena(jink)};
+  const std::vector<Subcommand> commands{add_plan(jink),   add_replay(jink), add_sim(jink),
+                                         add_fly(jink),    add_doctor(jink), add_report(jink),
+                                         add_export(jink), add_arena(jink),  add_study(jink)};
   const auto names = [&] {
     std::string list;
     for (const Subcommand& c : commands) list += (list.empty() ? "" : ", ") + c.app->get_name();

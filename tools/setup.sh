@@ -9,7 +9,7 @@ packages=(
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
   libeigen3-dev libyaml-cpp-dev libgtest-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev libcairo2-dev fonts-dejavu-core
-  libfastrtps-dev libfastcdr-dev fastddsgen libompl-dev
+  libfastrtps-dev libfastcdr-dev fastddsgen libompl-dev libpagmo-dev libboost-math-dev gnuplot-nox
   python3 python3-venv
   clang-format-14 clang-tidy-14
 )
@@ -17,7 +17,7 @@ case "${1:-}" in
   "") ;;
   # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
   test) command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell) ;;
-  bench) packages+=(libbenchmark-dev libpagmo-dev) ;;
+  bench) packages+=(libbenchmark-dev) ;;
   fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
   *) echo "setup: unknown group of packages: $1" >&2; exit 2 ;;
 esac

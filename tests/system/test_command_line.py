@@ -20,6 +20,8 @@ PAPER = [f"table2-{i}" for i in range(1, 6)] + [f"table12-{i}" for i in range(1,
 PLAN_KEYS = ["format", "scenario", "mode", "algorithm", "seed", "threads", "slaves", "sharing", "population", "iterations",
              "outcome", "path", "path_length", "straight_length", "slr", "flight_time_s", "min_clearance", "evaluations",
              "planning_time_s", "front"]
+ALGORITHMS = ["pmomvo", "momvo", *(f"pmomvo-{slaves}" for slaves in (2, 4, 6, 8, 10, 12)),
+              "mssa", "mogwo", "nsga2", "mopso", "nspso", "moead"]
 FLIGHT_KEYS = ["format", "scenario", "seed", "outcome", "reason", "flight_time_s", "path_length", "straight_length", "slr",
                "min_clearance", "max_speed", "plans", "deadline_misses", "plan_ms", "track_to_setpoint_ms"]
 # Arguments, and what the one line on stderr has to hold.
@@ -29,7 +31,12 @@ BAD_USAGE = [
     (["plan"], ["SCENARIO"]),
     (["plan", "no-such-file.yaml"], ["no-such-file.yaml"]),
     (["plan", CROSSING, "--mode", "wild"], ["--mode", "wild", "paper", "horizon"]),
-    (["plan", CROSSING, "--algorithm", "magic"], ["--algorithm", "magic", "pmomvo"]),
+    (["plan", CROSSING, "--algorithm", "magic"], ["--algorithm", "magic", *ALGORITHMS]),
+    (["plan", CROSSING, "--algorithm", "mogwo", "--slaves", "3"], ["--slaves", "mogwo", "pmomvo"]),
+    (["plan", CROSSING, "--algorithm", "pmomvo-6", "--slaves", "6"], ["--slaves", "pmomvo-6", "pmomvo"]),
+    (["plan", CROSSING, "--algorithm", "momvo", "--sharing", "2"], ["--sharing", "momvo", "pmomvo"]),
+    (["plan", CROSSING, "--algorithm", "pmomvo-12", "--population", "11"], ["--population", "11", "12 or more"]),
+    (["plan", CROSSING, "--algorithm", "nsga2", "--set", "optimizer.archive=2"], ["archive", "2"]),
     (["plan", CROSSING, "--threads", "0"], ["--threads", "0", "1 to 256"]),
     (["plan", CROSSING, "--slaves", "65"], ["--slaves", "65", "1 to 64"]),
     (["plan", CROSSING, "--population", "3", "--slaves", "6"], ["--population", "3", "6 or more"]),
@@ -136,6 +143,16 @@ def plans(jink):
             check(math.isclose(length, plan["path_length"], rel_tol=1e-9), "path_length is the path's")
 
 
+def algorithms(jink):
+    for name in ALGORITHMS:
+        for mode, population, evaluated in (("paper", 40, 18 * 40 * 30), ("horizon", 40, None)):
+            plan = jink.summary("plan", CROSSING, "--mode", mode, "--algorithm", name, "--population", population, "--iterations", 30)
+            slaves = int(name[7:]) if name.startswith("pmomvo-") else plan["slaves"] if name == "pmomvo" else 1
+            as_asked = plan["algorithm"] == name and plan["slaves"] == slaves and (plan["sharing"] > 0) == name.startswith("pmomvo")
+            check(as_asked and plan["outcome"] == "reached" and plan["min_clearance"] > 0, f"{plan['outcome']} with {plan['slaves']} slaves")
+            check(evaluated in (None, plan["evaluations"]), f"{plan['evaluations']} evaluations")
+
+
 def paper_slr(jink):
     """Mean SLR of 20 seeds at most 1.005 in every scenario of the paper."""
     for name in PAPER:
@@ -232,7 +249,7 @@ def test(program):
     jink = Jink(program)
     with tempfile.TemporaryDirectory(prefix="jink-command-line-") as name:
         folder = pathlib.Path(name)
-        for case in (bad_usage, help_reads, plans, paper_slr):
+        for case in (bad_usage, help_reads, plans, algorithms, paper_slr):
             print(f"== {case.__name__}", flush=True)
             case(jink)
         for case in (bad_values, same_bits, team_flight, recorded_flight, outcomes):

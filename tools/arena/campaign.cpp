@@ -3,22 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "tools/arena/flying.hpp"
+#include "tools/campaign/workers.hpp"
 
 namespace jink::arena {
 namespace {
-
-constexpr std::chrono::milliseconds kProgressPeriod{200};
 
 /// The workers and what they share.
 class Campaign {
@@ -27,20 +20,15 @@ class Campaign {
       : results_(results),
         file_(file),
         options_(options),
-        stop_([this] { return stopped_ || options_.interrupted(); }) {
+        stop_([this] { return workers_.failed() || options_.interrupted(); }) {
     std::vector<Job> jobs = jobs_of(results.settings);
     progress_.total = jobs.size();
     for (Job& job : jobs) add(std::move(job));
   }
 
   bool run() {
-    std::vector<std::jthread> workers;
-    running_ = options_.threads;
-    for (int i = 0; i < options_.threads; ++i) workers.emplace_back([this] { work(); });
-    while (!wait()) options_.on_progress(progress());
-    workers.clear();
-    options_.on_progress(progress());
-    if (failure_) std::rethrow_exception(failure_);
+    workers_.run(
+        options_.threads, [this] { return work(); }, [this] { options_.on_progress(progress()); });
     return complete();
   }
 
@@ -90,34 +78,20 @@ class Campaign {
     return progress_;
   }
 
-  /// True once all workers have ended.
-  bool wait() {
-    std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, kProgressPeriod, [this] { return running_ == 0; });
-  }
-
-  void work() {
+  /// False: nothing is left, or it was given up.
+  bool work() {
+    if (stop_()) return false;
+    const std::optional<Place> place = take();
+    if (!place) return false;
     try {
-      while (!stop_()) {
-        const std::optional<Place> place = take();
-        if (!place) break;
-        if (place->job)
-          fly_one(place->task, *place->job);
-        else
-          judge(place->task);
-      }
+      if (place->job)
+        fly_one(place->task, *place->job);
+      else
+        judge(place->task);
     } catch (const GivenUp&) {
-      // What is not done is to be seen in the results.
-    } catch (...) {
-      const std::scoped_lock lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-      stopped_ = true;
+      return false;  // what is not done is to be seen in the results
     }
-    {
-      const std::scoped_lock lock(mutex_);
-      --running_;
-    }
-    ended_.notify_all();
+    return true;
   }
 
   /// The next thing to do: the flights of the worlds in their order. A world without open flights is judged at once if
@@ -170,9 +144,7 @@ class Campaign {
     results_.add(record);
   }
 
-  mutable std::mutex
-      mutex_;  // guards results_, file_, progress_, next_, next_job_, open_, reached_, running_, failure_
-  std::condition_variable ended_;
+  mutable std::mutex mutex_;  // guards results_, file_, progress_, next_, next_job_, open_, reached_
   Results& results_;
   ResultsFile& file_;
   const CampaignOptions& options_;
@@ -180,10 +152,8 @@ class Campaign {
   std::vector<std::size_t> open_;
   std::vector<bool> reached_;
   std::size_t next_ = 0, next_job_ = 0;
-  int running_ = 0;
   Progress progress_;
-  std::exception_ptr failure_;
-  std::atomic<bool> stopped_{false};
+  campaign::Workers workers_;
   Stop stop_;
 };
 

@@ -7,27 +7,12 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "planner/random.hpp"
-
 namespace jink::arena {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "jink-arena-results/1";
-
-/// A bijection of 32 bits (the finalizer of MurmurHash3, public domain): different numbers stay different.
-constexpr std::uint32_t mix(std::uint32_t x) {
-  x ^= x >> 16U;
-  x *= 0x85ebca6bU;
-  x ^= x >> 13U;
-  x *= 0xc2b2ae35U;
-  return x ^ (x >> 16U);
-}
-
-std::string shard_text(const Shard& shard) {
-  return fmt::format("{}/{}", shard.number, shard.of);
-}
 
 /// The settings but for the parameters, as name and text.
 std::vector<config::SettingText> listed(const CampaignSettings& s) {
@@ -38,12 +23,7 @@ std::vector<config::SettingText> listed(const CampaignSettings& s) {
           {"tiers", fmt::format("{}", fmt::join(s.tiers, ","))},
           {"runs", std::to_string(s.runs)},
           {"oracle", s.oracle ? "on" : "off"},
-          {"shard", shard_text(s.shard)}};
-}
-
-const std::string* find(const std::vector<config::SettingText>& all, const std::string& key) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.key == key; });
-  return found == all.end() ? nullptr : &found->value;
+          {"shard", campaign::to_string(s.shard)}};
 }
 
 }  // namespace
@@ -54,9 +34,7 @@ std::string flight_name(const std::string& family, std::uint64_t seed, const std
 }
 
 std::uint64_t world_seed(std::uint64_t seed, std::string_view family, int run) {
-  std::uint64_t key = planner::SplitMix64(seed).next();
-  for (const char c : family) key = planner::SplitMix64(key ^ static_cast<unsigned char>(c)).next();
-  return mix(static_cast<std::uint32_t>(run) ^ static_cast<std::uint32_t>(key >> 32U));
+  return campaign::seed_of(seed, family, run);
 }
 
 std::vector<Job> jobs_of(const CampaignSettings& settings) {
@@ -117,32 +95,7 @@ std::vector<std::string> differences(const CampaignSettings& a, const std::strin
   std::vector<config::SettingText> of_a = listed(a), of_b = listed(b);
   of_a.insert(of_a.end(), a.parameters.begin(), a.parameters.end());
   of_b.insert(of_b.end(), b.parameters.begin(), b.parameters.end());
-  std::vector<std::string> result;
-  const auto tell = [&](const std::string& key, const std::string* x, const std::string* y) {
-    result.push_back(
-        fmt::format("{}: {} in {}, {} in {}", key, x ? *x : "missing", name_a, y ? *y : "missing", name_b));
-  };
-  for (const config::SettingText& one : of_a) {
-    const std::string* other = find(of_b, one.key);
-    if (other == nullptr || *other != one.value) tell(one.key, &one.value, other);
-  }
-  for (const config::SettingText& one : of_b)
-    if (find(of_a, one.key) == nullptr) tell(one.key, nullptr, &one.value);
-  return result;
-}
-
-std::string parameters_yaml(const std::vector<config::SettingText>& parameters) {
-  std::string text = "# The planner's parameters in this campaign.\nformat: jink-planner/1\n";
-  std::string section;
-  for (const config::SettingText& one : parameters) {
-    const auto dot = one.key.find('.');
-    if (one.key.substr(0, dot) != section) {
-      section = one.key.substr(0, dot);
-      text += section + ":\n";
-    }
-    text += fmt::format("  {}: {}\n", one.key.substr(dot + 1), one.value);
-  }
-  return text;
+  return campaign::differences(of_a, name_a, of_b, name_b);
 }
 
 }  // namespace jink::arena

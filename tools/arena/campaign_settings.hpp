@@ -9,15 +9,12 @@
 #include <vector>
 
 #include "config/settings.hpp"
+#include "tools/campaign/settings_text.hpp"
 
 namespace jink::arena {
 
-/// Part `number` (from 1) of `of`: whole worlds, so that shards have none in common.
-struct Shard {
-  int number = 1;
-  int of = 1;
-  bool operator==(const Shard&) const = default;
-};
+using campaign::parameters_yaml;
+using campaign::Shard;  // whole worlds, so that shards have none in common
 
 struct CampaignSettings {
   std::string version;  ///< of jink
@@ -66,9 +63,5 @@ struct Job {
 /// What differs, one text for each setting: "runs: 10 in OLD, 20 in NEW", with the two names in place; empty: nothing.
 [[nodiscard]] std::vector<std::string> differences(const CampaignSettings& a, const std::string& name_a,
                                                    const CampaignSettings& b, const std::string& name_b);
-
-/// The parameters as a file that config::load_settings() reads, so that a flight can be flown again from the results'
-/// folder alone.
-[[nodiscard]] std::string parameters_yaml(const std::vector<config::SettingText>& parameters);
 
 }  // namespace jink::arena

@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/arena/results.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
 namespace jink::arena {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw ResultsError(fmt::format("{}: cannot be read", file.string()));
-  return text.str();
-}
 
 /// The flights and worlds that a file with these settings may hold.
 struct Expected {
@@ -67,15 +53,6 @@ void add_line(const Json& line, const Expected& expected, Results& results) {
   }
 }
 
-/// Throws nlohmann's exception.
-Json parse(const std::string& text) {
-  return Json::parse(text);
-}
-
-std::string system_error(const std::filesystem::path& file) {
-  return fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno));
-}
-
 }  // namespace
 
 void Results::add(FlightRecord record) {
@@ -99,36 +76,16 @@ std::filesystem::path results_path(const std::filesystem::path& out) {
   return out / "flights.jsonl";
 }
 
-bool has_begun(const std::filesystem::path& file) {
-  std::error_code error;
-  return std::filesystem::exists(file, error) && read_text(file).find('\n') != std::string::npos;
-}
-
 Results read_results(const std::filesystem::path& file) {
-  std::istringstream text(read_text(file));
   Results results;
   std::optional<Expected> expected;
-  std::string line;
-  for (std::size_t number = 1; std::getline(text, line); ++number) {
-    if (text.eof()) {  // its end is missing
-      results.cut_off = true;
-      break;
-    }
-    try {
-      const Json json = parse(line);
-      if (expected) {
-        add_line(json, *expected, results);
-      } else {
-        results.settings = from_header(json);
+  results.cut_off = campaign::read_lines(
+      file,
+      [&](const Json& header) {
+        results.settings = from_header(header);
         expected.emplace(results.settings);
-      }
-    } catch (const Json::exception&) {
-      throw ResultsError(fmt::format("{}:{}: is not JSON", file.string(), number));
-    } catch (const std::runtime_error& error) {
-      throw ResultsError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
-    }
-  }
-  if (!expected) throw ResultsError(fmt::format("{}: holds no header", file.string()));
+      },
+      [&](const Json& line) { add_line(line, *expected, results); });
   return results;
 }
 
@@ -155,56 +112,6 @@ std::string to_text(const Results& results) {
   for (const auto& [world, record] : results.worlds) text += to_json(record).dump() + "\n";
   for (const auto& [job, record] : results.flights) text += to_json(record).dump() + "\n";
   return text;
-}
-
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path unfinished = file.string() + ".part";
-  {
-    std::ofstream out(unfinished, std::ios::binary);
-    out << text << std::flush;
-    if (!out) throw ResultsError(system_error(file));
-  }
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) throw ResultsError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
-}
-
-ResultsFile::ResultsFile(const std::filesystem::path& file, const Results& results) : file_(file) {
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) throw ResultsError(system_error(file));
-  try {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      throw ResultsError(fmt::format("{}: another process is writing there", file.string()));
-    const std::string text = read_text(file);
-    const std::size_t end = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-    if (::ftruncate(descriptor_, static_cast<off_t>(end)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
-      throw ResultsError(system_error(file));
-    if (end == 0) write(to_header(results.settings).dump() + "\n");
-  } catch (const ResultsError&) {
-    ::close(descriptor_);
-    throw;
-  }
-}
-
-ResultsFile::~ResultsFile() {
-  ::close(descriptor_);
-}
-
-void ResultsFile::append(const Json& line) {
-  write(line.dump() + "\n");
-}
-
-void ResultsFile::write(const std::string& text) {
-  if (broken_) throw ResultsError(fmt::format("{}: could not be written before", file_.string()));
-  broken_ = true;
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t n = ::write(descriptor_, text.data() + written, text.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) throw ResultsError(system_error(file_));
-    written += static_cast<std::size_t>(n);
-  }
-  broken_ = false;
 }
 
 }  // namespace jink::arena

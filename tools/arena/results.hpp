@@ -10,14 +10,13 @@
 
 #include "tools/arena/campaign_settings.hpp"
 #include "tools/arena/flight_record.hpp"
+#include "tools/campaign/line_file.hpp"
 
 namespace jink::arena {
 
-/// A results file that cannot be read, written or used: one line, fit for stderr.
-class ResultsError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using campaign::has_begun;
+using campaign::ResultsError;
+using campaign::write_whole;
 
 struct Results {
   CampaignSettings settings;
@@ -32,9 +31,6 @@ struct Results {
 
 [[nodiscard]] std::filesystem::path results_path(const std::filesystem::path& out);
 
-/// Whether a results file has begun: there is a file, and its header is whole.
-[[nodiscard]] bool has_begun(const std::filesystem::path& file);
-
 /// Reads a results file. A last line without its end is what a killed process leaves: it does not count. Throws
 /// ResultsError with file and line for anything else that no campaign wrote, and for a flight that the header's
 /// settings do not have.
@@ -48,28 +44,12 @@ struct Results {
 /// The whole file: header, worlds and flights in the order of their numbers.
 [[nodiscard]] std::string to_text(const Results& results);
 
-/// Writes a file that appears whole or not at all. Throws ResultsError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
-/// OUT/flights.jsonl while a campaign runs; no second process can open it. Not thread-safe.
-class ResultsFile {
+/// OUT/flights.jsonl while a campaign runs.
+class ResultsFile : public campaign::LineFile {
  public:
-  /// Creates the file with the results' header, or, where it is there, goes on behind its last whole line. Throws
-  /// ResultsError where it cannot be written or another process has it.
-  ResultsFile(const std::filesystem::path& file, const Results& results);
-  ~ResultsFile();
-  ResultsFile(const ResultsFile&) = delete;
-  ResultsFile& operator=(const ResultsFile&) = delete;
-
-  /// Appends a line, which is in the file when this returns. Throws ResultsError (a full disk).
-  void append(const nlohmann::ordered_json& line);
-
- private:
-  void write(const std::string& text);
-
-  std::filesystem::path file_;
-  int descriptor_ = -1;
-  bool broken_ = false;  // nothing may follow a line that could not be written to its end
+  /// As LineFile, with the results' header.
+  ResultsFile(const std::filesystem::path& file, const Results& results)
+      : LineFile(file, to_header(results.settings)) {}
 };
 
 }  // namespace jink::arena

@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The statistics of a campaign: intervals of proportions, quantiles, and how long plans took.
+// The statistics of a campaign: how long plans took, beside the intervals and quantiles that all tools share.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <vector>
+
+#include "tools/statistics.hpp"
 
 namespace jink::arena {
 
-/// A part of a whole, with the 95 % interval of its probability.
-struct Proportion {
-  std::int64_t count = 0;
-  std::int64_t of = 0;
-  double low = 0.0;
-  double high = 1.0;
-
-  /// count / of; 0 of nothing.
-  [[nodiscard]] double value() const { return of == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(of); }
-};
-
-/// The proportion with Wilson's score interval (Wilson 1927, J. Am. Stat. Assoc. 22, p. 209-212), without a correction
-/// for continuity: inside [0, 1], and of use for counts of 0 and of all. Of nothing nothing is known: [0, 1]. Requires
-/// 0 <= count <= of.
-[[nodiscard]] Proportion wilson(std::int64_t count, std::int64_t of);
-
-/// The quantile `p` in [0, 1] of sorted values, linear between neighbours (Hyndman and Fan's type 7, R's and NumPy's
-/// default). Infinite values are allowed. NaN without values.
-[[nodiscard]] double quantile(const std::vector<double>& sorted, double p);
+using tools::Proportion;
+using tools::quantile;
+using tools::wilson;
 
 /// Durations counted in bins of equal ratio, so that those of many flights can be added up without keeping each.
 class DurationHistogram {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page without its data. The source is generated from template.html and the files that it includes: see
-// embed.cmake.
+// cmake/embed.cmake.
 #pragma once
 
 #include <string_view>

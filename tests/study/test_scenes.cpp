@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "planner/indicators.hpp"
+#include "planner/obstacle_motion.hpp"
+#include "planner/random.hpp"
+#include "planner/verifier.hpp"
+#include "small_study.hpp"
+
+namespace jink::study {
+namespace {
+
+planner::TimedPath straight_flight(const World& world) {
+  planner::TimedPath path(2);
+  path[0].position = world.start;
+  path[1].position = world.target;
+  path[1].t = (world.target - world.start).norm() / world.vehicle.cruise_speed;
+  return path;
+}
+
+bool hit(const World& world, std::span<const planner::Track> tracks) {
+  const planner::TimedPath path = straight_flight(world);
+  return !planner::verify({path, tracks, 0.0, world.vehicle.radius, world.volume}).free();
+}
+
+TEST(BlockedWorlds, HaveThePapersSizeAndHalfOfTheirObstaclesHitTheStraightFlight) {
+  const Scenes scenes(1);
+  for (const bool pictured : {false, true}) {
+    const auto blocked = pictured ? pictured_worlds(true) : numbered_worlds(true);
+    const auto papers = pictured ? pictured_worlds(false) : numbered_worlds(false);
+    for (std::size_t i = 0; i < blocked.size(); ++i) {
+      const World paper = scenes.world(papers[i], 0);
+      for (int run = 0; run < 20; ++run) {
+        const World world = scenes.world(blocked[i], run);
+        EXPECT_EQ(world.start, paper.start);
+        EXPECT_EQ(world.target, paper.target);
+        ASSERT_EQ(world.tracks.size(), paper.tracks.size());
+        std::size_t hits = 0;
+        for (const planner::Track& track : world.tracks) hits += hit(world, {&track, 1}) ? 1 : 0;
+        EXPECT_GE(2 * hits, world.tracks.size()) << blocked[i] << " run " << run;
+        EXPECT_LT(hits, world.tracks.size()) << "every second one passes beside";
+      }
+    }
+  }
+}
+
+TEST(BlockedWorlds, LeaveStartAndArrivalFree) {
+  const Scenes scenes(3);
+  for (int run = 0; run < 20; ++run) {
+    const World world = scenes.world(hardest_world(true), run);
+    const double end = straight_flight(world).back().t;
+    for (const planner::Track& track : world.tracks) {
+      EXPECT_GT((track.position - world.start).norm(), track.radius + world.vehicle.radius + 1.0);
+      EXPECT_GT((planner::predict_position(track, end) - world.target).norm(),
+                track.radius + world.vehicle.radius + 0.5);
+    }
+  }
+}
+
+TEST(BlockedWorlds, AreOthersInEachRunAndForEachSeedButForThePicturedOnes) {
+  const auto first = [](const Scenes& scenes, const std::string& name, int run) {
+    return scenes.world(name, run).tracks.front().position;
+  };
+  const Scenes one(1), again(1), other(2);
+  EXPECT_EQ(first(one, "blocked2-1", 0), first(again, "blocked2-1", 0));
+  EXPECT_NE(first(one, "blocked2-1", 0), first(one, "blocked2-1", 1));
+  EXPECT_NE(first(one, "blocked2-1", 0), first(other, "blocked2-1", 0));
+  EXPECT_EQ(first(one, "blocked12-1", 0), first(one, "blocked12-1", 1));
+}
+
+TEST(PapersWorlds, HaveAFreeStraightFlight) {
+  const Scenes scenes(1);
+  for (const std::string& name : numbered_worlds(false)) {
+    const World world = scenes.world(name, 0);
+    EXPECT_FALSE(hit(world, world.tracks)) << name;
+  }
+}
+
+/// f1 = u² + v², f2 = (u − 1)² + v²: the front is sqrt(f1) + sqrt(f2) = 1.
+class TwoPoints final : public planner::Problem {
+ public:
+  [[nodiscard]] int dimension() const override { return 2; }
+  [[nodiscard]] int objectives() const override { return 2; }
+  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
+  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
+  void evaluate(std::span<const double> x, std::span<planner::Cost> costs) const override {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const double u = x[2 * i], v = x[2 * i + 1];
+      costs[i].f = {u * u + v * v, (u - 1.0) * (u - 1.0) + v * v, 0.0};
+    }
+  }
+
+ private:
+  std::array<double, 2> lower_{-1.3, -1.7}, upper_{2.1, 1.9};
+};
+
+TEST(ReferenceFront, OfAProblemWithAKnownFrontIsThat) {
+  const ReferenceFront front = search_reference(TwoPoints());
+  ASSERT_GT(front.points.size(), 100U);
+  for (const planner::Point2& p : front.points) EXPECT_NEAR(std::sqrt(p[0]) + std::sqrt(p[1]), 1.0, 1e-2);
+  EXPECT_NEAR(front.bounds.ideal[0], 0.0, 1e-6);
+  EXPECT_NEAR(front.bounds.nadir[1], 1.0, 1e-2);
+  // The area above the front in the unit square is 5/6; the strips to 1.1 add 0.21.
+  EXPECT_NEAR(front.hypervolume, 5.0 / 6.0 + 0.21, 1e-3);
+}
+
+TEST(FrontSteps, HaveFrontsThatNoRandomPointBeats) {
+  const Scenes scenes(1);
+  const config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
+  for (const bool blocked : {false, true}) {
+    std::size_t hits = 0;
+    const auto steps = front_steps(scenes.world(hardest_world(blocked), 0), settings.paper, blocked);
+    ASSERT_EQ(steps.size(), kFrontSteps);
+    for (const FrontStep& step : steps) {
+      hits += step.hit ? 1 : 0;
+      const auto& bounds = step.reference.bounds;
+      EXPECT_GT(bounds.nadir[0] - bounds.ideal[0], 0.01) << "a front, not a point";
+      EXPECT_GT(bounds.nadir[1] - bounds.ideal[1], 0.1);
+      planner::RandomStream random(7, static_cast<std::uint64_t>(step.station));
+      std::vector<planner::Point2> with = step.reference.points;  // fewer than the hypervolume counts
+      for (int i = 0; i < 20000; ++i) {
+        const std::array<double, 2> x{random.uniform(step.problem.lower()[0], step.problem.upper()[0]),
+                                      random.uniform(step.problem.lower()[1], step.problem.upper()[1])};
+        planner::Cost cost;
+        step.problem.evaluate(x, {&cost, 1});
+        with.push_back({cost.f[0], cost.f[1]});
+      }
+      EXPECT_LT(indicators(with, step.reference).hv, step.reference.hypervolume + 1e-4) << step.station;
+    }
+    EXPECT_EQ(hits, blocked ? kFrontSteps : 0U);
+  }
+}
+
+}  // namespace
+}  // namespace jink::study

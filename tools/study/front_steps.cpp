@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/study/front_steps.hpp"
+
+#include <Eigen/Geometry>  // cross products
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "planner/geometry.hpp"
+#include "planner/obstacle_motion.hpp"
+#include "planner/pareto.hpp"
+
+namespace jink::study {
+namespace {
+
+using planner::Cost;
+using planner::Point2;
+using planner::Vec3;
+
+constexpr int kGrid = 257;  // points along each variable of the first search
+constexpr int kRefinements = 3;
+constexpr int kFiner = 4;                // how much finer each is
+constexpr double kMargin = 0.05;         // of the front's extent, by which what is searched about may be worse at first
+constexpr std::size_t kSearched = 3000;  // points that are searched about
+constexpr std::size_t kKept = 400;       // points of the front
+constexpr Point2 kReferencePoint{1.1, 1.1};
+constexpr double kBeside = 0.8;  // m, where the vehicle is
+constexpr double kAbove = 0.4;
+constexpr double kTurned = 35.0 * std::numbers::pi / 180.0;
+
+struct Sample {
+  std::array<double, 2> x{};
+  Point2 f{};
+};
+
+void sort_by_first(std::vector<Sample>& samples) {
+  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.f < b.f; });
+}
+
+/// Every so-manieth, with both ends.
+std::vector<Sample> thinned(std::vector<Sample> samples, std::size_t most) {
+  if (samples.size() <= most) return samples;
+  std::vector<Sample> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(samples[i * (samples.size() - 1) / (most - 1)]);
+  return kept;
+}
+
+/// The non-dominated ones of sorted samples, each f once.
+std::vector<Sample> non_dominated(const std::vector<Sample>& sorted) {
+  std::vector<Sample> front;
+  for (const Sample& s : sorted)
+    if (front.empty() || s.f[1] < front.back().f[1]) front.push_back(s);
+  return front;
+}
+
+/// Those of sorted samples that none beats by more than `share` of the front's extent in both objectives. The front
+/// alone would not do: one lucky point of a coarse grid dominates others whose neighbourhood has better ones.
+std::vector<Sample> nearly_non_dominated(const std::vector<Sample>& sorted, double share) {
+  const std::vector<Sample> front = non_dominated(sorted);
+  const Point2 margin{share * (front.back().f[0] - front.front().f[0]),
+                      share * (front.front().f[1] - front.back().f[1])};
+  std::vector<Sample> kept;
+  std::size_t before = 0;  // of the front, those better in the first objective by the margin
+  for (const Sample& s : sorted) {
+    while (before < front.size() && front[before].f[0] <= s.f[0] - margin[0]) ++before;
+    if (before == 0 || front[before - 1].f[1] > s.f[1] - margin[1]) kept.push_back(s);
+  }
+  return kept;
+}
+
+/// Adds the costs of the points `x`, one after the other.
+void evaluate(const planner::Problem& problem, const std::vector<double>& x, std::vector<Sample>& samples) {
+  std::vector<Cost> costs(x.size() / 2);
+  problem.evaluate(x, costs);
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    planner::make_rankable(costs[i]);
+    samples.push_back({{x[2 * i], x[2 * i + 1]}, {costs[i].f[0], costs[i].f[1]}});
+  }
+}
+
+Point2 normal(const Point2& point, const ReferenceFront& reference) {
+  return planner::normalise(point, reference.bounds);
+}
+
+/// Where the vehicle comes from and how it flew, at the step to `station`.
+struct Situation {
+  planner::WaypointProblem::Step step;
+  std::vector<planner::Track> tracks;
+  std::array<double, 2> shortest{};  // offsets of the waypoint on the way straight to the target
+};
+
+Situation situation(const World& world, const planner::PaperSettings& settings, int station, double side) {
+  const int segments = settings.waypoints - 1;
+  const Vec3 mission = world.target - world.start;
+  const planner::PathFrame frame(world.start, world.target);
+  Situation s;
+  s.step.target = world.target;
+  s.step.base = world.start + mission * (static_cast<double>(station) / segments);
+  s.step.from = world.start + mission * (static_cast<double>(station - 1) / segments) + side * kBeside * frame.left +
+                kAbove * frame.up;
+  const Vec3 ahead = (world.target - s.step.from).normalized();
+  s.step.direction = std::cos(kTurned) * ahead + std::sin(kTurned) * side * frame.left;
+  const bool along_x = settings.axis == planner::Axis::kWorldX;
+  s.step.lateral1 = along_x ? Vec3::UnitY() : frame.left;
+  s.step.lateral2 = along_x ? Vec3::UnitZ() : frame.up;
+  s.step.volume = world.volume;
+  const double floor = std::max(world.volume.min.z(), -settings.lateral_range) - s.step.base.z();
+  s.step.lower = {-settings.lateral_range, std::max(-settings.lateral_range, floor)};
+  s.step.upper = {settings.lateral_range, settings.lateral_range};
+  const Vec3 normal = s.step.lateral1.cross(s.step.lateral2);
+  const double share = (s.step.base - s.step.from).dot(normal) / (world.target - s.step.from).dot(normal);
+  const Vec3 crossing = s.step.from + share * (world.target - s.step.from) - s.step.base;
+  s.shortest = {crossing.dot(s.step.lateral1), crossing.dot(s.step.lateral2)};
+  const double t = mission.norm() * static_cast<double>(station - 1) / segments / world.vehicle.cruise_speed;
+  for (const planner::Track& track : world.tracks) s.tracks.push_back(planner::predict(track, t));
+  return s;
+}
+
+FrontStep prepared(const World& world, const planner::PaperSettings& settings, int station, double side,
+                   double& violation) {
+  const Situation s = situation(world, settings, station, side);
+  FrontStep step{station, false, planner::WaypointProblem(settings, world.vehicle), {}};
+  step.problem.prepare(s.step, s.tracks);
+  violation = step.problem.violation(step.problem.waypoint(s.shortest[0], s.shortest[1]));
+  step.hit = violation > 0.0;
+  return step;
+}
+
+/// The stations whose shortest way is blocked most, in flight order.
+std::vector<int> blocked_stations(const World& world, const planner::PaperSettings& settings) {
+  std::vector<std::pair<double, int>> found;
+  for (int station = 2; station < settings.waypoints - 1; ++station) {
+    double violation = 0.0;
+    static_cast<void>(prepared(world, settings, station, station % 2 == 0 ? 1.0 : -1.0, violation));
+    found.emplace_back(-violation, station);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<int> stations;
+  stations.reserve(kFrontSteps);
+  for (std::size_t i = 0; i < kFrontSteps; ++i) stations.push_back(found[i].second);
+  std::sort(stations.begin(), stations.end());
+  return stations;
+}
+
+}  // namespace
+
+ReferenceFront search_reference(const planner::Problem& problem) {
+  const std::array<double, 2> low{problem.lower()[0], problem.lower()[1]};
+  const std::array<double, 2> high{problem.upper()[0], problem.upper()[1]};
+  std::array<double, 2> spacing{(high[0] - low[0]) / (kGrid - 1), (high[1] - low[1]) / (kGrid - 1)};
+  std::vector<double> x;
+  for (int i = 0; i < kGrid; ++i)
+    for (int j = 0; j < kGrid; ++j) x.insert(x.end(), {low[0] + spacing[0] * i, low[1] + spacing[1] * j});
+  std::vector<Sample> samples;
+  evaluate(problem, x, samples);
+  sort_by_first(samples);
+  double margin = kMargin;
+  for (int round = 0; round < kRefinements; ++round) {
+    samples = thinned(nearly_non_dominated(samples, margin), kSearched);
+    margin /= kFiner;
+    for (double& h : spacing) h /= kFiner;
+    x.clear();
+    for (const Sample& centre : samples)
+      for (int i = -kFiner / 2; i <= kFiner / 2; ++i)
+        for (int j = -kFiner / 2; j <= kFiner / 2; ++j)
+          x.insert(x.end(), {std::clamp(centre.x[0] + spacing[0] * i, low[0], high[0]),
+                             std::clamp(centre.x[1] + spacing[1] * j, low[1], high[1])});
+    evaluate(problem, x, samples);
+    sort_by_first(samples);
+  }
+  ReferenceFront reference;
+  const std::vector<Sample> front = non_dominated(samples);
+  std::vector<Point2> all;
+  all.reserve(front.size());
+  for (const Sample& s : front) all.push_back(s.f);
+  reference.bounds = planner::front_bounds(all);
+  for (Point2& p : all) p = normal(p, reference);
+  reference.hypervolume = planner::hypervolume(all, kReferencePoint);
+  for (const Sample& s : thinned(front, kKept)) reference.points.push_back(s.f);
+  return reference;
+}
+
+Indicators indicators(const std::vector<Point2>& front, const ReferenceFront& reference) {
+  std::vector<Point2> scaled;
+  scaled.reserve(front.size());
+  for (const Point2& p : front) scaled.push_back(normal(p, reference));
+  return {planner::hypervolume(scaled, kReferencePoint), planner::maximum_spread(front, reference.points),
+          planner::hole_relative_size(scaled)};
+}
+
+std::vector<FrontStep> front_steps(const World& world, const planner::PaperSettings& settings, bool blocked) {
+  if (settings.waypoints < static_cast<int>(kFrontSteps) + 2)
+    throw std::invalid_argument("paper.waypoints: the study needs " + std::to_string(kFrontSteps + 2) + " or more");
+  std::vector<int> stations;
+  if (blocked) {
+    stations = blocked_stations(world, settings);
+  } else {
+    for (std::size_t i = 1; i <= kFrontSteps; ++i)
+      stations.push_back(static_cast<int>(i) * settings.waypoints / static_cast<int>(kFrontSteps + 1));
+  }
+  std::vector<FrontStep> steps;
+  for (const int station : stations) {
+    double violation = 0.0;
+    steps.push_back(prepared(world, settings, station, station % 2 == 0 ? 1.0 : -1.0, violation));
+    steps.back().reference = search_reference(steps.back().problem);
+  }
+  return steps;
+}
+
+}  // namespace jink::study

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The study as a short paper: which tables and figures come where, and the sentences between them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/study/presentation/report.hpp"
+#include "tools/study/running.hpp"
+#include "tools/study/selection.hpp"
+#include "tools/study/verdicts.hpp"
+
+namespace jink::study {
+
+/// What the report is put together from.
+struct ReportParts {
+  std::map<std::string, Table> tables;        ///< by id
+  std::map<std::string, FigureFile> figures;  ///< by id; what was not drawn is missing
+  std::vector<Claim> claims;
+};
+
+[[nodiscard]] Report study_report(const Selection& selection, const Setting& setting, const ReportParts& parts);
+
+/// How much of the study is there: "All 40 runs of each ..." or what is missing.
+[[nodiscard]] std::string extent_sentence(const Selection& selection);
+
+}  // namespace jink::study
