@@ -7,10 +7,12 @@
 
 #include "bridge/harmonic_fit.hpp"
 #include "bridge/motion_learner.hpp"
+#include "planner/random.hpp"
 
 namespace jink::bridge {
 namespace {
 
+using planner::RandomStream;
 using planner::Track;
 using planner::Vec3;
 
