@@ -223,8 +223,10 @@ CASES = [
     Case("battery_critical", [at(1.5, "low_battery", remaining=0.06)], 1, "battery is critical", ("battery",), end="ground"),
     Case("autopilot_reboots", [at(1.5, "reboot")], 1, "began anew", linger=3.0, hazards=None),
     Case("process_stalls_0.4s", during=stalled_process(0.4), events=("stalled",), hazards=("did not run",)),
+    # High up: meanwhile the autopilot's own failsafe sinks at 0.7 m/s.
     Case("process_stalls_4s", status=1, reason="did not run for 4", during=stalled_process(4.0), hazards=("did not run",),
-         end="hold"),
+         end="hold", scenario={"start": [0, 0, 4], "target": [9, 0, 4]},
+         mission={"waypoints": [[9, 0, 4]], "takeoff_height": 4.0}),
     Case("killed_and_restarted_at_once", during=killed_and_started_again(0.0), hazards=None),
     Case("killed_and_restarted_2s_later", during=killed_and_started_again(2.0), hazards=None),
 ]
