@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <limits>
 
 namespace jink::arena {
 namespace {
@@ -59,18 +59,15 @@ std::vector<Job> jobs_of(const CampaignSettings& settings) {
 }
 
 Json to_header(const CampaignSettings& s) {
-  Json parameters = Json::object();
-  for (const config::SettingText& one : s.parameters) parameters[one.key] = one.value;
-  return {{"type", "header"},       {"format", kFormat},       {"version", s.version}, {"seed", s.seed},
-          {"families", s.families}, {"pilots", s.pilots},      {"tiers", s.tiers},     {"runs", s.runs},
-          {"oracle", s.oracle},     {"shard", s.shard.number}, {"shards", s.shard.of}, {"parameters", parameters}};
+  return {{"type", "header"},        {"format", kFormat},      {"version", s.version},
+          {"seed", s.seed},          {"families", s.families}, {"pilots", s.pilots},
+          {"tiers", s.tiers},        {"runs", s.runs},         {"oracle", s.oracle},
+          {"shard", s.shard.number}, {"shards", s.shard.of},   {"parameters", campaign::to_json(s.parameters)}};
 }
 
 CampaignSettings from_header(const Json& header) {
-  if (!header.is_object() || header.value("format", "") != kFormat)
-    throw std::runtime_error(fmt::format("the first line is not a {} header", kFormat));
   CampaignSettings s;
-  try {
+  campaign::read_header(header, kFormat, [&] {
     header.at("version").get_to(s.version);
     header.at("seed").get_to(s.seed);
     header.at("families").get_to(s.families);
@@ -80,13 +77,9 @@ CampaignSettings from_header(const Json& header) {
     header.at("oracle").get_to(s.oracle);
     header.at("shard").get_to(s.shard.number);
     header.at("shards").get_to(s.shard.of);
-    for (const auto& [key, value] : header.at("parameters").items())
-      s.parameters.push_back({key, value.get<std::string>()});
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(std::string("the header: ") + error.what());
-  }
-  if (s.runs < 1 || s.shard.of < 1 || s.shard.number < 1 || s.shard.number > s.shard.of)
-    throw std::runtime_error("the header: runs, shard and shards do not fit one another");
+    s.parameters = campaign::parameters_of(header.at("parameters"));
+  });
+  campaign::check_header(s.runs, std::numeric_limits<int>::max(), s.shard);
   return s;
 }
 

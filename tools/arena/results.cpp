@@ -5,6 +5,8 @@
 
 #include <optional>
 
+#include "tools/campaign/merge.hpp"
+
 namespace jink::arena {
 namespace {
 
@@ -90,21 +92,12 @@ Results read_results(const std::filesystem::path& file) {
 }
 
 Results merge_results(const std::vector<std::filesystem::path>& folders) {
-  Results merged;
-  for (const std::filesystem::path& folder : folders) {
-    Results part = read_results(results_path(folder));
-    part.settings.shard = {};
-    if (&folder == &folders.front()) merged.settings = part.settings;
-    const auto differ = differences(merged.settings, folders.front().string(), part.settings, folder.string());
-    if (!differ.empty()) throw ResultsError(fmt::format("these are two campaigns: {}", differ.front()));
-    try {
-      for (auto& [job, record] : part.flights) merged.add(std::move(record));
-      for (const auto& [world, record] : part.worlds) merged.add(record);
-    } catch (const ResultsError& error) {
-      throw ResultsError(fmt::format("{}: {}", folder.string(), error.what()));
-    }
-  }
-  return merged;
+  return campaign::merge<Results>(
+      folders, "campaigns", [](const std::filesystem::path& folder) { return read_results(results_path(folder)); },
+      [](Results& merged, Results& part) {
+        for (auto& [job, record] : part.flights) merged.add(std::move(record));
+        for (const auto& [world, record] : part.worlds) merged.add(record);
+      });
 }
 
 std::string to_text(const Results& results) {

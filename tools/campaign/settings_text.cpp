@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "planner/random.hpp"
 
@@ -50,6 +51,33 @@ std::vector<std::string> differences(const std::vector<config::SettingText>& a, 
   for (const config::SettingText& one : b)
     if (find(a, one.key) == nullptr) tell(one.key, nullptr, &one.value);
   return result;
+}
+
+nlohmann::ordered_json to_json(const std::vector<config::SettingText>& parameters) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();
+  for (const config::SettingText& one : parameters) result[one.key] = one.value;
+  return result;
+}
+
+std::vector<config::SettingText> parameters_of(const nlohmann::ordered_json& parameters) {
+  std::vector<config::SettingText> result;
+  for (const auto& [key, value] : parameters.items()) result.push_back({key, value.get<std::string>()});
+  return result;
+}
+
+void read_header(const nlohmann::ordered_json& header, std::string_view format, const std::function<void()>& read) {
+  if (!header.is_object() || header.value("format", "") != format)
+    throw std::runtime_error(fmt::format("the first line is not a {} header", format));
+  try {
+    read();
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw std::runtime_error(std::string("the header: ") + error.what());
+  }
+}
+
+void check_header(int runs, int most, const Shard& shard) {
+  if (runs < 1 || runs > most || shard.of < 1 || shard.number < 1 || shard.number > shard.of)
+    throw std::runtime_error("the header: runs, shard and shards do not fit one another");
 }
 
 std::string parameters_yaml(const std::vector<config::SettingText>& parameters) {

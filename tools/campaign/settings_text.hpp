@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +29,17 @@ struct Shard {
 [[nodiscard]] std::vector<std::string> differences(const std::vector<config::SettingText>& a, const std::string& name_a,
                                                    const std::vector<config::SettingText>& b,
                                                    const std::string& name_b);
+
+/// The parameters in a results file's header: an object of texts, in their order. parameters_of() throws
+/// nlohmann::json::exception.
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<config::SettingText>& parameters);
+[[nodiscard]] std::vector<config::SettingText> parameters_of(const nlohmann::ordered_json& parameters);
+
+/// Lets `read` take what it wants from a header of that format. Throws std::runtime_error where it is another's, where
+/// `read` throws nlohmann::json::exception.
+void read_header(const nlohmann::ordered_json& header, std::string_view format, const std::function<void()>& read);
+/// Throws std::runtime_error unless there are 1 to `most` runs and the shard is one.
+void check_header(int runs, int most, const Shard& shard);
 
 /// The parameters as a file that config::load_settings() reads, so that what was run can be run again from the results'
 /// folder alone.

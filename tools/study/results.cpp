@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "tools/campaign/merge.hpp"
+
 namespace jink::study {
 namespace {
 
@@ -62,21 +64,12 @@ Results read_results(const std::filesystem::path& file) {
 }
 
 Results merge_results(const std::vector<std::filesystem::path>& folders) {
-  Results merged;
-  for (const std::filesystem::path& folder : folders) {
-    Results part = read_results(results_path(folder));
-    part.settings.shard = {};
-    if (&folder == &folders.front()) merged.settings = part.settings;
-    const auto differ = differences(merged.settings, folders.front().string(), part.settings, folder.string());
-    if (!differ.empty()) throw ResultsError(fmt::format("these are two studies: {}", differ.front()));
-    try {
-      for (auto& [number, record] : part.runs) merged.add(std::move(record));
-    } catch (const ResultsError& error) {
-      throw ResultsError(fmt::format("{}: {}", folder.string(), error.what()));
-    }
-    for (const Machine& machine : part.machines) merged.add(machine);
-  }
-  return merged;
+  return campaign::merge<Results>(
+      folders, "studies", [](const std::filesystem::path& folder) { return read_results(results_path(folder)); },
+      [](Results& merged, Results& part) {
+        for (auto& [number, record] : part.runs) merged.add(std::move(record));
+        for (const Machine& machine : part.machines) merged.add(machine);
+      });
 }
 
 std::string to_text(const Results& results) {

@@ -185,31 +185,23 @@ std::vector<Job> jobs_of(const StudySettings& settings) {
 }
 
 Json to_header(const StudySettings& s) {
-  Json parameters = Json::object();
-  for (const config::SettingText& one : s.parameters) parameters[one.key] = one.value;
   return {{"type", "header"},        {"format", kFormat},    {"version", s.version},
           {"seed", s.seed},          {"runs", s.runs},       {"quick", s.quick},
-          {"shard", s.shard.number}, {"shards", s.shard.of}, {"parameters", parameters}};
+          {"shard", s.shard.number}, {"shards", s.shard.of}, {"parameters", campaign::to_json(s.parameters)}};
 }
 
 StudySettings from_header(const Json& header) {
-  if (!header.is_object() || header.value("format", "") != kFormat)
-    throw std::runtime_error(fmt::format("the first line is not a {} header", kFormat));
   StudySettings s;
-  try {
+  campaign::read_header(header, kFormat, [&] {
     header.at("version").get_to(s.version);
     header.at("seed").get_to(s.seed);
     header.at("runs").get_to(s.runs);
     header.at("quick").get_to(s.quick);
     header.at("shard").get_to(s.shard.number);
     header.at("shards").get_to(s.shard.of);
-    for (const auto& [key, value] : header.at("parameters").items())
-      s.parameters.push_back({key, value.get<std::string>()});
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(std::string("the header: ") + error.what());
-  }
-  if (s.runs < 1 || s.runs > kMostStudyRuns || s.shard.of < 1 || s.shard.number < 1 || s.shard.number > s.shard.of)
-    throw std::runtime_error("the header: runs, shard and shards do not fit one another");
+    s.parameters = campaign::parameters_of(header.at("parameters"));
+  });
+  campaign::check_header(s.runs, kMostStudyRuns, s.shard);
   return s;
 }
 
