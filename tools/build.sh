@@ -3,7 +3,7 @@
 # JINK_CMAKE_ARGS adds options, as -DJINK_WARNINGS_AS_ERRORS=ON.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-preset=${1:?a preset: dev, release, asan, tsan or fuzz}; shift
+preset=${1:?a preset: dev, release, asan or tsan}; shift
 tools/setup.sh
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache} CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER:-ccache}
 # shellcheck disable=SC2086

@@ -1,26 +1,26 @@
 #!/usr/bin/env bash
 # Builds the fuzzers of tests/fuzz (clang 14, libFuzzer, address and undefined sanitizers) and runs each for so many
 # seconds, two at a time, from its corpus. Not zero where one finds something; the input is then under
-# build/fuzz/artifacts, and belongs into tests/fuzz/corpus/NAME once it is mended.
+# build/asan/artifacts, and belongs into tests/fuzz/corpus/NAME once it is mended.
 #   tools/fuzz.sh [SECONDS [NAME...]]        default: 60, all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 case $seconds in ''|*[!0-9]*|0) echo "fuzz: '$seconds' is not a whole number of seconds above 0" >&2; exit 2 ;; esac
 shift || true
-tools/setup.sh fuzz
-tools/build.sh fuzz jink_fuzzers
+tools/setup.sh sanitizers
+tools/build.sh asan jink_fuzzers
 names=("$@"); [ $# -gt 0 ] || names=($(basename -a tests/fuzz/corpus/*))
 for name in "${names[@]}"; do
-  [ -x "build/fuzz/fuzz_$name" ] || { echo "fuzz: there is no fuzzer '$name'" >&2; exit 2; }
+  [ -x "build/asan/fuzz_$name" ] || { echo "fuzz: there is no fuzzer '$name'" >&2; exit 2; }
 done
 
 fuzz() {
-  local name=$1 log=build/fuzz/$1.log
-  mkdir -p "build/fuzz/found/$name" build/fuzz/artifacts
+  local name=$1 log=build/asan/$1.log
+  mkdir -p "build/asan/found/$name" build/asan/artifacts
   # What was found goes to the first folder; a corpus that is worth keeping is committed by hand.
-  if "build/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 \
-      -artifact_prefix="build/fuzz/artifacts/$name-" "build/fuzz/found/$name" "tests/fuzz/corpus/$name" >"$log" 2>&1; then
+  if "build/asan/fuzz_$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 \
+      -artifact_prefix="build/asan/artifacts/$name-" "build/asan/found/$name" "tests/fuzz/corpus/$name" >"$log" 2>&1; then
     echo "fuzz: $name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs, nothing found"
   else
     echo "fuzz: $name: FOUND SOMETHING, see $PWD/$log" >&2

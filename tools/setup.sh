@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what jink builds with on Debian 12: packages by apt, Python packages into .venv. Quick when nothing is missing.
 # Called by tools/demo.sh, tools/test.sh and .ci/run; safe to run by hand. Not root: uses sudo and says so.
-#   tools/setup.sh [test|bench|fuzz]        what tools/test.sh, tools/bench.sh or tools/fuzz.sh needs too
+#   tools/setup.sh [test|bench|sanitizers...]   what the tests, tools/bench.sh, or tools/fuzz.sh and the preset asan need too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -13,14 +13,15 @@ packages=(
   python3 python3-venv
   clang-format-14 clang-tidy-14
 )
-case "${1:-}" in
-  "") ;;
+for group in "$@"; do
+  case $group in
   # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
   test) command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell) ;;
   bench) packages+=(libbenchmark-dev) ;;
-  fuzz) packages+=(clang-14 libclang-rt-14-dev) ;;
-  *) echo "setup: unknown group of packages: $1" >&2; exit 2 ;;
-esac
+  sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
+  *) echo "setup: unknown group of packages: $group" >&2; exit 2 ;;
+  esac
+done
 missing=()
 for p in "${packages[@]}"; do
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$p" 2>/dev/null)" = installed ] || missing+=("$p")

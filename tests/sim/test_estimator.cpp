@@ -12,7 +12,6 @@
 namespace jink::sim {
 namespace {
 
-constexpr double kStep = VehicleModel::kStep;
 constexpr double kTimeout = 5.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

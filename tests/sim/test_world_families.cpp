@@ -189,8 +189,8 @@ TEST(WorldFamilies, DistinctNames) {
 }
 
 TEST(WorldFamilies, UnknownNameThrows) {
-  EXPECT_THROW(make_world("crossings", 1), std::invalid_argument);
-  EXPECT_THROW(make_world("", 1), std::invalid_argument);
+  EXPECT_THROW((void)make_world("crossings", 1), std::invalid_argument);
+  EXPECT_THROW((void)make_world("", 1), std::invalid_argument);
   EXPECT_FALSE(is_linear("crossings"));
   EXPECT_FALSE(blocks_straight_line("crossings"));
 }
