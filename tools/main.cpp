@@ -42,6 +42,9 @@ int run(int argc, char** argv) {
     return std::any_of(commands.begin(), commands.end(),
                        [&](const Subcommand& c) { return c.app->get_name() == name; });
   };
+  const auto chosen = [&] {
+    return std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
+  };
   if (argc > 1 && argv[1][0] != '-' && !known(argv[1])) {
     return complain("there is no command '" + std::string(argv[1]) + "'; the commands are " + names());
   }
@@ -50,11 +53,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return jink.exit(success);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    return complain(std::string(error.what()) + " (see `jink --help`)");
+    const auto command = chosen();  // none where the command line ends before one
+    const std::string name = command == commands.end() ? "" : command->app->get_name() + " ";
+    return complain(std::string(error.what()) + " (see `jink " + name + "--help`)");
   }
-  const auto chosen =
-      std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
-  return chosen->run();
+  return chosen()->run();
 }
 
 }  // namespace

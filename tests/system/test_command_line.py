@@ -26,9 +26,10 @@ FLIGHT_KEYS = ["format", "scenario", "seed", "outcome", "reason", "flight_time_s
                "min_clearance", "max_speed", "plans", "deadline_misses", "plan_ms", "track_to_setpoint_ms"]
 # Arguments, and what the one line on stderr has to hold.
 BAD_USAGE = [
-    ([], ["subcommand is required"]),
+    ([], ["subcommand is required", "`jink --help`"]),
     (["bogus"], ["bogus", "plan, replay, sim, fly"]),
-    (["plan"], ["SCENARIO"]),
+    (["plan"], ["SCENARIO", "`jink plan --help`"]),
+    (["study", "--bogus"], ["--bogus", "`jink study --help`"]),
     (["plan", "no-such-file.yaml"], ["no-such-file.yaml"]),
     (["plan", CROSSING, "--mode", "wild"], ["--mode", "wild", "paper", "horizon"]),
     (["plan", CROSSING, "--algorithm", "magic"], ["--algorithm", "magic", *ALGORITHMS]),
