@@ -4,6 +4,7 @@
 
 #include <cairo.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdint>
@@ -364,14 +365,29 @@ TEST(Figure, SaysThatGnuplotIsMissing) {
             "figure figure13: gnuplot is not installed (Debian: gnuplot-nox; tools/setup.sh installs it)");
 }
 
+/// A program of that name in the folder.
+void fake_gnuplot(const Folder& folder, const std::string& text) {
+  std::ofstream(folder.path() / "gnuplot") << "#!/bin/sh\n" << text << '\n';
+  std::filesystem::permissions(folder.path() / "gnuplot", std::filesystem::perms::owner_all);
+}
+
+/// Ctrl-C in a terminal goes to all of its process group.
+TEST(Figure, CtrlCDoesNotReachGnuplot) {
+  const Folder folder;
+  fake_gnuplot(folder, "cut -d' ' -f5 /proc/$$/stat > group; echo x > figure13.png; echo x > figure13.svg");
+  const Path path(folder.path().string() + ":/bin:/usr/bin");
+  ASSERT_EQ(failure(folder.path() / "out"), "drawn");
+  pid_t group = 0;
+  std::ifstream(folder.path() / "out" / "group") >> group;
+  EXPECT_GT(group, 0);
+  EXPECT_NE(group, ::getpgrp());
+}
+
 TEST(Figure, SaysWhyGnuplotFailedAndLeavesNoOldPicture) {
   const Folder folder;
   const std::filesystem::path out = folder.path() / "out";
   ASSERT_EQ(failure(out), "drawn");
-  const auto fake = [&](const std::string& text) {
-    std::ofstream(folder.path() / "gnuplot") << "#!/bin/sh\n" << text << '\n';
-    std::filesystem::permissions(folder.path() / "gnuplot", std::filesystem::perms::owner_all);
-  };
+  const auto fake = [&](const std::string& text) { fake_gnuplot(folder, text); };
   fake("echo 'plot x' >&2; echo '     ^' >&2; echo '\"figure13.gp\" line 7: no such thing' >&2; echo >&2; exit 1");
   const Path path(folder.path().string() + ":/bin:/usr/bin");
   EXPECT_EQ(failure(out), "figure figure13: gnuplot failed: \"figure13.gp\" line 7: no such thing");

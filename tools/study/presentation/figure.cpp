@@ -93,8 +93,14 @@ void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe.end(1), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, pipe.end(1), STDERR_FILENO);
+  // In a process group of its own: a Ctrl-C is for us, who end what was begun.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
   pid_t child = -1;
-  const int failure = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int failure = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) refuse(id, "gnuplot is not installed (Debian: gnuplot-nox; tools/setup.sh installs it)");
   if (failure != 0) refuse(id, fmt::format("gnuplot cannot be run: {}", std::generic_category().message(failure)));
