@@ -124,6 +124,7 @@ int run_campaign(const ArenaOptions& options, const Printer& printer) {
   const arena::CampaignSettings settings = settings_of(options, planner);
   arena::Results results = begin(settings, options, printer);
   campaign::make_folder(options.out);
+  require_json(options.common.json);
   arena::ResultsFile file(arena::results_path(options.out), results);
   arena::write_whole(fs::path(options.out) / "planner.yaml", arena::parameters_yaml(settings.parameters));
   printer.line(fmt::format("seed {}: {} flights on {} threads, results in {}", settings.seed,

@@ -91,6 +91,7 @@ int run_study(const StudyOptions& options, const Printer& printer) {
   study::require_gnuplot();
   const study::Setting setting(settings, planner);
   campaign::make_folder(options.out);
+  require_json(options.common.json);
   campaign::LineFile file(study::results_path(options.out), study::to_header(results.settings));
   const study::Machine machine = study::this_machine();
   file.append(study::to_json(machine));

@@ -94,6 +94,9 @@ class BackgroundPrinter {
 /// for an empty name. Throws UsageError.
 void write_json(const std::string& file, const nlohmann::ordered_json& summary);
 
+/// Throws UsageError where write_json() would: before hours of work rather than after. Leaves nothing behind.
+void require_json(const std::string& file);
+
 /// From now on SIGINT, SIGTERM and SIGHUP set a flag instead of ending the process, and SIGPIPE does nothing.
 void catch_signals();
 /// True once one came.

@@ -10,14 +10,12 @@ import json
 import pathlib
 import re
 import shlex
-import signal
 import subprocess
-import tempfile
-import time
 import xml.etree.ElementTree
 
 import yaml
 
+from campaigns import Campaigns, change_seed, in_scratch, refused
 from flight import check, main
 
 # A small search takes little time; straight flight is sure to fail in these families.
@@ -50,19 +48,7 @@ BAD_USAGE = [
 ]
 
 
-class Campaigns:
-    def __init__(self, program, folder):
-        self.program = program
-        self.folder = folder
-
-    def run(self, *arguments, seconds=300):
-        return subprocess.run([self.program, "arena", *map(str, arguments)], capture_output=True, text=True, timeout=seconds, cwd=self.folder)
-
-    def fly(self, out, *arguments, status=0):
-        done = self.run("--out", out, *arguments)
-        check(done.returncode == status, f"arena {' '.join(map(str, arguments[:3]))}: exit status {done.returncode}: {done.stderr.strip()}")
-        return done.stdout
-
+class Flights(Campaigns):
     def result(self, out):
         """All that does not come from the wall clock, and where the files are."""
         lines = [json.loads(line) for line in (self.folder / out / "flights.jsonl").read_text().splitlines()]
@@ -78,16 +64,8 @@ class Campaigns:
         return lines, table
 
 
-def refused(done, parts):
-    lines = done.stderr.strip().splitlines()
-    said = done.returncode == 2 and len(lines) == 1 and all(part in lines[0] for part in parts)
-    check(said, f"status {done.returncode}: {done.stderr.strip()}")
-
-
 def bad_usage(arena):
-    for arguments, parts in BAD_USAGE:
-        refused(arena.run(*arguments), parts)
-    check(not list(arena.folder.iterdir()), "nothing was left by any of these")
+    arena.refuses(BAD_USAGE)
 
 
 class WellFormed(html.parser.HTMLParser):
@@ -110,8 +88,13 @@ class WellFormed(html.parser.HTMLParser):
             assert self.open and self.open.pop() == tag, f"</{tag}> closes nothing"
 
 
+def failed_flights(arena):
+    with open(arena.folder / "whole" / "flights.csv", newline="", encoding="utf-8") as file:
+        return [flight for flight in csv.DictReader(file) if flight["outcome"] != "reached"]
+
+
 def files(arena):
-    said = arena.fly("whole", *SMALL, "--json", "whole.json")
+    said = arena.make("whole", *SMALL, "--json", "whole.json")
     folder = arena.folder / "whole"
     check(all((folder / name).stat().st_size > 0 for name in FILES), "all files are there")
     check(json.loads((arena.folder / "whole.json").read_text()) == json.loads((folder / "table.json").read_text()), "--json is table.json")
@@ -119,7 +102,7 @@ def files(arena):
         flights = list(csv.DictReader(file))
     summary = json.loads((folder / "table.json").read_text())
     check(summary["format"] == "jink-arena/1" and summary["complete"] and len(flights) == summary["flights"] == 8, "8 flights")
-    failed = [flight for flight in flights if flight["outcome"] != "reached"]
+    failed = failed_flights(arena)
     check(0 < len(failed) < 8, f"{len(failed)} of them failed")
     names = {path.name for path in (folder / "failed").iterdir()}
     check(names == {f"{f['family']}-{f['seed']}-{f['tier']}-{f['pilot']}" for f in failed}, "each left its folder, and no other")
@@ -134,12 +117,11 @@ def files(arena):
     check(not reader.open and reader.counts["svg"] == 2 and "script" not in reader.counts, "the page is well formed, with a figure for each tier")
     for figure in re.findall(r"<svg.*?</svg>", page, re.S):
         xml.etree.ElementTree.fromstring(figure)
-    return failed
 
 
-def replay(arena, failed):
+def replay(arena):
     """The one command flies the same flight and leaves a report."""
-    flight = failed[0]
+    flight = failed_flights(arena)[0]
     command = shlex.split(flight["replay"])
     check(command[:2] == ["jink", "replay"], flight["replay"])
     done = subprocess.run([arena.program, *command[1:], "--json", "-"], capture_output=True, text=True, timeout=300, cwd=arena.folder)
@@ -152,7 +134,7 @@ def replay(arena, failed):
 
 def rivals(arena):
     """Who flies the straight line hits something; that flight is replayed as that pilot's, and its log is not taken for jink's."""
-    arena.fly("rivals", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
+    arena.make("rivals", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
     table = json.loads((arena.folder / "rivals" / "table.json").read_text())
     check([row["pilot"] for row in table["table"]] == ["jink", "straight"], "a row for each pilot")
     failure = next(f for f in table["failures"] if f["pilot"] == "straight")
@@ -167,19 +149,18 @@ def rivals(arena):
 
 def same_however(arena):
     whole = arena.result("whole")
-    arena.fly("threads", *SMALL, "--threads", 3)
+    arena.make("threads", *SMALL, "--threads", 3)
     check(arena.result("threads") == whole, "the same with 3 threads")
     for part in (1, 2):
-        arena.fly(f"part{part}", *SMALL, "--shard", f"{part}/2")
-    arena.fly("incomplete", "--merge", "part2", status=1)
-    arena.fly("merged", "--merge", "part2", "part1")
+        arena.make(f"part{part}", *SMALL, "--shard", f"{part}/2")
+    arena.make("incomplete", "--merge", "part2", status=1)
+    arena.make("merged", "--merge", "part2", "part1")
     lines, table = arena.result("merged")
     check((lines, table) == whole, "two shards merged are the whole")
     left = {path.name for path in (arena.folder / "whole" / "failed").iterdir()}
     check({path.name for path in (arena.folder / "merged" / "failed").iterdir()} == left, "with the failed flights")
     refused(arena.run("--out", "merged", "--merge", "part1"), ["merged", "holds a campaign"])
-    wrong = (arena.folder / "part2" / "flights.jsonl").read_text()
-    (arena.folder / "part2" / "flights.jsonl").write_text(wrong.replace('"seed":1,', '"seed":2,', 1))
+    change_seed(arena.folder / "part2" / "flights.jsonl")
     refused(arena.run("--out", "x", "--merge", "part1", "part2"), ["part2"])
 
 
@@ -194,22 +175,14 @@ def resumed(arena):
     text = (arena.folder / "whole" / "flights.jsonl").read_text()
     for length, words in ((2 * len(text) // 3, "cut off"), (100, "holds no campaign")):
         (cut / "flights.jsonl").write_text(text[:length])
-        said = arena.fly("cut", *SMALL, "--resume")
+        said = arena.make("cut", *SMALL, "--resume")
         check(words in said and arena.result("cut") == whole, f"goes on behind what was cut off after {length} bytes")
 
 
 def interrupted(arena):
     """Ctrl-C keeps what is done, writes its tables and says how to go on."""
-    arguments = ["--out", "stopped", "--families", "darts,gates", "--runs", "40", *QUICK]
-    process = subprocess.Popen([arena.program, "arena", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=arena.folder)
-    file = arena.folder / "stopped" / "flights.jsonl"
-    end = time.monotonic() + 120
-    while time.monotonic() < end and not (file.exists() and file.read_bytes().count(b"\n") > 3):
-        time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=60)
+    arena.interrupt("stopped", "--families", "darts,gates", "--runs", 40, *QUICK, file="flights.jsonl", lines=4)
     summary = json.loads((arena.folder / "stopped" / "table.json").read_text())
-    check(process.returncode == 1 and "--resume" in output and not errors, f"exit status {process.returncode}")
     check(3 <= summary["flights"] < 160 and not summary["complete"], f"{summary['flights']} flights are kept")
 
 
@@ -223,13 +196,7 @@ def written(arena):
 
 
 def test(program):
-    with tempfile.TemporaryDirectory(prefix="jink-arena-") as name:
-        arena = Campaigns(pathlib.Path(program).resolve(), pathlib.Path(name))
-        bad_usage(arena)
-        replay(arena, files(arena))
-        for case in (rivals, same_however, resumed, interrupted, written):
-            print(f"== {case.__name__}", flush=True)
-            case(arena)
+    in_scratch(Flights, program, "arena", (bad_usage, files, replay, rivals, same_however, resumed, interrupted, written))
 
 
 main(test)

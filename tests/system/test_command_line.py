@@ -105,7 +105,7 @@ def bad_values(jink, folder):
 
 
 def help_reads(jink):
-    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["report"], ["arena"]):
+    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["doctor"], ["report"], ["export"], ["arena"], ["study"]):
         done = jink.run(*command, "--help")
         check(done.returncode == 0 and "Usage: jink" in done.stdout and not done.stderr, f"jink {' '.join(command)} --help")
 

@@ -6,12 +6,9 @@
 
 import csv
 import json
-import pathlib
-import signal
 import subprocess
-import tempfile
-import time
 
+from campaigns import Campaigns, change_seed, in_scratch, refused
 from flight import check, main
 
 # Everything of the study, each search of no length.
@@ -39,20 +36,7 @@ BAD_USAGE = [
 ]
 
 
-class Studies:
-    def __init__(self, program, folder):
-        self.program = program
-        self.folder = folder
-
-    def run(self, *arguments, seconds=500, environment=None):
-        return subprocess.run([self.program, "study", *map(str, arguments)], capture_output=True, text=True, timeout=seconds,
-                              cwd=self.folder, env=environment)
-
-    def make(self, out, *arguments, status=0):
-        done = self.run("--out", out, *arguments)
-        check(done.returncode == status, f"study {out}: exit status {done.returncode} {done.stderr.strip()}")
-        return done.stdout
-
+class Studies(Campaigns):
     def runs(self, out):
         """All that does not come from the wall clock or the machine, in the order of runs."""
         lines = [json.loads(line) for line in (self.folder / out / "runs.jsonl").read_text().splitlines()]
@@ -67,16 +51,8 @@ class Studies:
         return {name: (self.folder / out / f"{name}.csv").read_text() for name in names}
 
 
-def refused(done, parts):
-    lines = done.stderr.strip().splitlines()
-    said = done.returncode == 2 and len(lines) == 1 and all(part in lines[0] for part in parts)
-    check(said, f"status {done.returncode}: {done.stderr.strip()}")
-
-
 def bad_usage(study):
-    for arguments, parts in BAD_USAGE:
-        refused(study.run(*arguments), parts)
-    check(not list(study.folder.iterdir()), "nothing was left by any of these")
+    study.refuses(BAD_USAGE)
     without = study.run(*SMALL, environment={"PATH": "/nowhere"})
     refused(without, ["gnuplot is not in PATH"])
     check(not list(study.folder.iterdir()), "no gnuplot: said before anything is run")
@@ -123,8 +99,7 @@ def same_however(study):
     study.make("merged", "--merge", "part2", "part1")
     check((study.runs("merged"), study.tables("merged")) == whole, "two shards merged are the whole")
     refused(study.run("--out", "merged", "--merge", "part1"), ["merged", "holds a campaign"])
-    wrong = (study.folder / "part2" / "runs.jsonl").read_text()
-    (study.folder / "part2" / "runs.jsonl").write_text(wrong.replace('"seed":1,', '"seed":2,', 1))
+    change_seed(study.folder / "part2" / "runs.jsonl")
     refused(study.run("--out", "x", "--merge", "part1", "part2"), ["part2"])
 
 
@@ -160,27 +135,15 @@ def broken(study):
 
 
 def interrupted(study):
-    """Ctrl-C keeps what is done, makes tables of it and says how to go on."""
-    process = subprocess.Popen([study.program, "study", "--quick", "--runs", "30", "--out", "stopped", "--json", "stopped.json"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=study.folder)
-    file = study.folder / "stopped" / "runs.jsonl"
-    end = time.monotonic() + 120
-    while time.monotonic() < end and not (file.exists() and file.read_bytes().count(b"\n") > 20):
-        time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=120)
+    """Ctrl-C keeps what is done, makes tables and figures of it and says how to go on."""
+    study.interrupt("stopped", "--quick", "--runs", 30, "--json", "stopped.json", file="runs.jsonl", lines=20)
     summary = json.loads((study.folder / "stopped.json").read_text())
-    check(process.returncode == 1 and "--resume" in output and not errors, f"exit status {process.returncode} {errors}")
     check(10 < summary["runs_done"] < summary["runs_of_whole"] and not summary["complete"], f"{summary['runs_done']} runs are kept")
     check("Incomplete" in (study.folder / "stopped" / "report.html").read_text(), "the report says that it is incomplete")
 
 
 def test(program):
-    with tempfile.TemporaryDirectory(prefix="jink-study-") as name:
-        study = Studies(pathlib.Path(program).resolve(), pathlib.Path(name))
-        for case in (bad_usage, files, numbers, same_however, resumed, broken, interrupted):
-            print(f"== {case.__name__}", flush=True)
-            case(study)
+    in_scratch(Studies, program, "study", (bad_usage, files, numbers, same_however, resumed, broken, interrupted))
 
 
 main(test)
