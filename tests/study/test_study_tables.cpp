@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "small_study.hpp"
@@ -42,6 +45,13 @@ const std::vector<Cell>& row(const Table& table, const std::vector<std::string>&
     if (same) return r;
   }
   throw std::out_of_range(labels.front());
+}
+
+std::size_t marks_of(const Table& table) {
+  std::size_t marks = 0;
+  for (const std::vector<Cell>& r : table.rows)
+    marks += static_cast<std::size_t>(std::count_if(r.begin(), r.end(), [](const Cell& c) { return c.marked; }));
+  return marks;
 }
 
 bool is_path(const Record& r, std::string_view algorithm, std::string_view world) {
@@ -99,6 +109,7 @@ TEST(RankTables, OfThePapersMeansAreThePapersTables) {
   for (const std::vector<Cell>& r : find(tables, "table11").rows)
     for (std::size_t i = 1; i < r.size(); ++i) EXPECT_EQ(r[i].text, r[i].paper) << r[0].text << " " << i;
   EXPECT_NE(find(tables, "table09").notes.front().find("F = 83.500 (the paper: 83.500)"), std::string::npos);
+  EXPECT_EQ(marks_of(find(tables, "table11")), 20U) << "the paper underlines all 21";
   EXPECT_NE(find(tables, "table11").notes.front().find("2.7939 (the paper: 2.7939)"), std::string::npos);
 }
 
@@ -121,6 +132,40 @@ TEST(RankTables, DoNotRankTheLastBitsOfLengths) {
   const std::vector<Table> tables = rank_tables(Selection(results), false);
   for (const std::vector<Cell>& r : find(tables, "table08").rows) EXPECT_EQ(r[1].value, 4.0) << r[0].text;
   EXPECT_NE(find(tables, "table08").notes.front().find("are not shown to differ"), std::string::npos);
+}
+
+/// Ranks whose sums are 15 apart at most, LSD's critical difference being 11.5, while F = 1.2 is far from critical.
+TEST(RankTables, MarkNoPairsWhereFriedmansTestFindsNothing) {
+  const std::vector<std::vector<double>> by_algorithm{{3, 1, 4, 1, 2}, {7, 3, 2, 7, 5}, {4, 4, 3, 3, 4},
+                                                      {2, 2, 1, 6, 7}, {1, 7, 6, 4, 1}, {6, 6, 7, 2, 3},
+                                                      {5, 5, 5, 5, 6}};
+  const Results results = changed(1, [&](Record& r) {
+    const Variant& v = r.job.variant;
+    const std::vector<std::string> own = own_algorithms();
+    const auto a = static_cast<std::size_t>(std::find(own.begin(), own.end(), v.algorithm) - own.begin());
+    if (v.kind != RunKind::kPath || a == own.size() || is_blocked(v.world) || is_pictured(v.world)) return;
+    r.measured[key::kPlanning] = by_algorithm[a][static_cast<std::size_t>(std::stoi(world_number(v.world)) - 1)];
+  });
+  ASSERT_TRUE(fisher_lsd(by_algorithm).pairs[5].lsd) << "MOMVO against PMOMVO-12";
+  const std::vector<Table> tables = rank_tables(Selection(results), false);
+  for (const char* id : {"table11", "table11-pairs"}) {
+    EXPECT_EQ(marks_of(find(tables, id)), 0U) << id;
+    EXPECT_NE(find(tables, id).notes.back().find("LSD marks nothing"), std::string::npos) << id;
+  }
+}
+
+TEST(AnytimeTable, NamesThoseThatHadMoreBeforeTheEnd) {
+  const auto notes = [](double of_momvo) {
+    const Results results = changed(3, [=](Record& r) {
+      if (r.job.variant.kind != RunKind::kAnytime) return;
+      for (double& hv : r.series[key::kHvAt]) hv = 0.9 + 0.01 * r.job.run;
+      if (r.job.variant.algorithm == "momvo") r.series[key::kHvAt][5] += of_momvo + 0.001 * r.job.run;
+    });
+    return fmt::format("{}", fmt::join(anytime_table(Selection(results), false).notes, " "));
+  };
+  EXPECT_NE(notes(0.05).find("before the end: MOMVO (0.9610 at 35 %). "), std::string::npos) << notes(0.05);
+  EXPECT_EQ(notes(-0.05).find("before the end"), std::string::npos);
+  EXPECT_EQ(notes(0.0).find("before the end"), std::string::npos) << "no more than the runs' noise";
 }
 
 TEST(SizeTables, AreLeftEmptyWhereAQuickStudyHasNothing) {
@@ -187,6 +232,14 @@ TEST(Claims, FollowTheRuns) {
   };
   EXPECT_EQ(outcome(fastest("pmomvo-6"), "PMOMVO-6 is the fastest"), Outcome::kBetter);
   EXPECT_EQ(outcome(fastest("pmomvo-8"), "PMOMVO-6 is the fastest"), Outcome::kWorse);
+  const auto spread = [](double in_the_last) {
+    return changed(1, [=](Record& r) {
+      const bool momvo = r.job.variant.kind == RunKind::kPath && r.job.variant.algorithm == "momvo";
+      if (momvo) r.values[key::kSlr] = is_hardest(r.job.variant.world) ? 1.0 + in_the_last : 1.02;
+    });
+  };
+  EXPECT_EQ(outcome(spread(0.01), "differ in path length"), Outcome::kBetter);
+  EXPECT_EQ(outcome(spread(0.001), "differ in path length"), Outcome::kWorse) << "not in each scenario";
 }
 
 TEST(StudyOutput, OfAStudyThatHasHardlyBegunLeavesPlacesEmptyAndSaysSo) {

@@ -132,21 +132,26 @@ Claim fastest_claim(const Selection& s) {
 }
 
 Claim optimum_claim(const Selection& s) {
-  constexpr double kPaperStep = 0.01;  // what the paper's Table 6 shows about, in SLR
-  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  constexpr double kPaperLeast = 0.007;  // Table 6, scenario 4: mean SLR 1.0119 of MOMVO, 1.0045 of PMOMVO-8
+  double narrowest = std::numeric_limits<double>::infinity(), widest = 0.0, greatest = 0.0;
   for (const std::string& world : numbered_worlds(false)) {
+    std::vector<double> means;
     for (const std::string& algorithm : own_algorithms()) {
       const std::vector<double> slr = values(reached(s.paths(algorithm, world)), key::kSlr);
-      if (slr.empty()) continue;
-      least = std::min(least, mean(slr));
-      greatest = std::max(greatest, mean(slr));
+      if (!slr.empty()) means.push_back(mean(slr));
     }
+    if (means.empty()) continue;
+    const auto [least, most] = std::minmax_element(means.begin(), means.end());
+    greatest = std::max(greatest, *most);
+    narrowest = std::min(narrowest, *most - *least);
+    widest = std::max(widest, *most - *least);
   }
-  Claim claim{"The variants differ in path length by 1 to 2 % (Table 6)", "runs are missing", Outcome::kUnknown};
+  Claim claim{"The variants differ in path length by 0.7 to 2 % in each scenario (Table 6)", "runs are missing",
+              Outcome::kUnknown};
   if (greatest <= 0.0) return claim;
-  claim.finding =
-      fmt::format("mean SLR − 1 of all variants and scenarios from {:.2g} to {:.2g}", least - 1.0, greatest - 1.0);
-  claim.outcome = greatest - least < kPaperStep ? Outcome::kWorse : Outcome::kBetter;
+  claim.finding = fmt::format("mean SLRs differ by {:.2g} to {:.2g} in a scenario; the greatest is 1 + {:.2g}",
+                              narrowest, widest, greatest - 1.0);
+  claim.outcome = narrowest < kPaperLeast ? Outcome::kWorse : Outcome::kBetter;
   return claim;
 }
 
@@ -159,8 +164,8 @@ Claim difference_claim(const Selection& s) {
   const std::vector<double> sums = rank_sums(ranks);
   const Friedman f = friedman(ranks);
   claim.finding = fmt::format(
-      "F = {:.3f}, critical {:.4f}, p = {:.4f}; rank sums from MOMVO to PMOMVO-12: {}; means closer than {:g} count as "
-      "equal",
+      "F = {:.3f}, critical {:.4f}, p = {:.4f}; rank sums from MOMVO to PMOMVO-12: {}; means are ranked in steps of "
+      "{:g}",
       f.iman_davenport, f.critical_f, f.iman_p, fmt::join(sums, ", "), kSameSlr);
   claim.outcome = f.rejected && std::is_sorted(sums.rbegin(), sums.rend()) ? Outcome::kBetter : Outcome::kWorse;
   return claim;

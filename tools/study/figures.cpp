@@ -129,7 +129,10 @@ std::vector<CaptionedFigure> time_figures(const Selection& selection) {
 
 CaptionedFigure comparison_figure(const Selection& selection) {
   CaptionedFigure result{
-      {}, "Mean planning time in scenario 5 with 95 % intervals, on a logarithmic axis. " + timing_note(selection)};
+      {},
+      "Mean planning time in scenario 5 with 95 % intervals, on a logarithmic axis; intervals end at half "
+      "the mean. " +
+          timing_note(selection)};
   result.figure.id = "figure15";
   result.figure.title = "Planning time of all algorithms";
   Panel panel;

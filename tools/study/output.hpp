@@ -15,8 +15,7 @@ void require_gnuplot();
 
 /// Writes tableNN.csv, .md and .tex, figureNN.gp, .dat, .png and .svg, claims and verdicts likewise, worlds/,
 /// planner.yaml and report.html into the folder, which exists; figures are drawn by `threads` at once. Gives back the
-/// summary that
-/// --json writes. Throws ResultsError or FigureError where something cannot be written or drawn.
+/// summary that --json writes. Throws ResultsError or FigureError where something cannot be written or drawn.
 [[nodiscard]] nlohmann::ordered_json write_study(const Results& results, const Setting& setting,
                                                  const std::filesystem::path& out, int threads);
 

@@ -22,7 +22,7 @@ struct ReportParts {
 
 [[nodiscard]] Report study_report(const Selection& selection, const Setting& setting, const ReportParts& parts);
 
-/// How much of the study is there: "All 40 runs of each ..." or what is missing.
+/// How much of the study is there: "5680 runs of 284 variants, all there." or how many are missing.
 [[nodiscard]] std::string extent_sentence(const Selection& selection);
 
 }  // namespace jink::study

@@ -25,8 +25,8 @@ enum class Direction { kSmallerIsBetter, kLargerIsBetter };
 /// Tables 6 and 7: SLR; planning time, and "table07-flight", the flown time.
 [[nodiscard]] std::vector<Table> path_tables(const Selection& selection, bool blocked);
 
-/// Below this, mean SLRs count as equal: 22 µm of 22 m, which no flight shows. Ranks would otherwise order the last
-/// bits of numbers.
+/// Steps in which mean SLRs are ranked: 22 µm of 22 m, which no flight shows. Ranks would otherwise order the last bits
+/// of numbers.
 inline constexpr double kSameSlr = 1e-6;
 
 /// How the algorithms do in the five worlds, smaller is better. By length: first by the share of paths that failed,
@@ -35,8 +35,8 @@ inline constexpr double kSameSlr = 1e-6;
 enum class Criterion { kLength, kTime };
 [[nodiscard]] std::optional<Scores> scores(const Selection& selection, Criterion criterion, bool blocked);
 
-/// Tables 8 to 11, with "table10-pairs" and "table11-pairs": p-values and Holm's correction. Empty where runs are
-/// missing.
+/// Tables 8 to 11, with "table10-pairs" and "table11-pairs": p-values and Holm's correction. LSD marks pairs only where
+/// Friedman's test, by F, found that the algorithms differ. Empty where runs are missing.
 [[nodiscard]] std::vector<Table> rank_tables(const Selection& selection, bool blocked);
 
 /// Table 12: the pictured worlds, and how PMOMVO-6 does in them.
@@ -51,7 +51,8 @@ enum class Criterion { kLength, kTime };
 /// "success": how many paths of every algorithm reach in the blocked worlds.
 [[nodiscard]] Table success_table(const Selection& selection);
 
-/// "anytime": hypervolume at each checkpoint, of every algorithm.
+/// "anytime": hypervolume at each checkpoint, of every algorithm. A note names those that had more before the end, by
+/// the 95 % interval of paired differences.
 [[nodiscard]] Table anytime_table(const Selection& selection, bool blocked);
 
 /// All of them, the harder versions behind.

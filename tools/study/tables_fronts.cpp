@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -108,6 +110,29 @@ std::string timing_note(const Selection& selection) {
       machines > 1 || threads.size() > 1 ? "; times of several machines or thread counts are mixed" : "");
 }
 
+namespace {
+
+std::vector<double> hv_at(const Records& records, std::size_t checkpoint) {
+  std::vector<double> at;
+  for (const Record* r : records) at.push_back(r->series.at(key::kHvAt).at(checkpoint));
+  return at;
+}
+
+/// "MOMVO (0.9783 at 50 %)" where the search had more then than at its end; empty where it is not shown to.
+std::string late_loss(const Records& records, const std::vector<double>& shares, const std::string& name) {
+  if (records.size() < 2) return {};
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < shares.size(); ++i)
+    if (mean(hv_at(records, i)) > mean(hv_at(records, best))) best = i;
+  std::vector<double> lost = hv_at(records, best);
+  const std::vector<double> end = hv_at(records, shares.size() - 1);
+  std::transform(lost.begin(), lost.end(), end.begin(), lost.begin(), std::minus<>());
+  if (summary(lost).low <= 0.0) return {};
+  return fmt::format("{} ({:.4f} at {:g} %)", name, mean(hv_at(records, best)), 100.0 * shares[best]);
+}
+
+}  // namespace
+
 Table anytime_table(const Selection& selection, bool blocked) {
   Table table;
   table.id = table_id("anytime", blocked);
@@ -123,12 +148,13 @@ Table anytime_table(const Selection& selection, bool blocked) {
     if (i % 2 == 0) shown.push_back(i);
   for (const std::size_t i : shown) table.columns.push_back(fmt::format("{:g} %", 100.0 * shares[i]));
   table.columns.emplace_back("Time of all (ms)");
+  std::vector<std::string> losing;
+  bool momvo_loses = false;
   for (const Algorithm& algorithm : algorithms()) {
     const Records records = selection.anytime(algorithm.name, hardest_world(blocked));
     std::vector<Cell> row{label(std::string(algorithm.label))};
     for (const std::size_t i : shown) {
-      std::vector<double> at;
-      for (const Record* r : records) at.push_back(r->series.at(key::kHvAt).at(i));
+      const std::vector<double> at = hv_at(records, i);
       if (at.empty()) {
         row.push_back(nothing());
         continue;
@@ -141,8 +167,20 @@ Table anytime_table(const Selection& selection, bool blocked) {
     const auto all = scaled(measured(records, key::seconds_at(shares.size() - 1)), 1000.0);
     row.push_back(all.empty() ? nothing() : number(mean(all), 3));
     table.rows.push_back(std::move(row));
+    const std::string loss = late_loss(records, shares, std::string(algorithm.label));
+    if (loss.empty()) continue;
+    losing.push_back(loss);
+    momvo_loses = momvo_loses || algorithm.name == "momvo";
   }
-  table.notes.push_back("Each figure is from searches that were stopped there, of the schedule of the whole search.");
+  table.notes.push_back("Each number is from searches that were stopped there, on the schedule of the whole search.");
+  if (!losing.empty())
+    table.notes.push_back(fmt::format(
+        "Had more before the end: {}. A full archive gives members up by lot, and when the steps get small, newcomers "
+        "are found only beside others.{}",
+        fmt::join(losing, ", "),
+        momvo_loses ? fmt::format(" Part of PMOMVO's lead over MOMVO in {} is this loss.",
+                                  table_name(table_id("table03", blocked)))
+                    : ""));
   table.notes.push_back(timing_note(selection));
   return table;
 }

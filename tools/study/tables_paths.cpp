@@ -69,8 +69,8 @@ Table slr_table(const Selection& selection, bool blocked) {
   table.notes.push_back("SLR of the paths that are free, checked in continuous time, and end at the target.");
   if (!blocked) {
     table.notes.push_back(
-        "The straight flight is free in all five scenarios, so that an SLR of 1 is the optimum; the paper's STD is "
-        "that of the length in m (its Table 15 prints the same number as such).");
+        "The straight flight is free in all five scenarios, so that an SLR of 1 is the optimum. The paper's STD is too "
+        "large for its SLR; for PMOMVO-6 in scenario 5 its Table 15 has the same number beside the length in m.");
   } else {
     table.notes.push_back("Each run has another world, the same for all algorithms: STD is of worlds and seeds.");
   }
@@ -101,7 +101,7 @@ Table flight_table(const Selection& selection, bool blocked) {
   return table;
 }
 
-Table rank_table(const Selection&, const Scores& scores, const char* id, const char* what, bool blocked) {
+Table rank_table(const Scores& scores, const char* id, const char* what, bool blocked) {
   Table table;
   table.id = table_id(id, blocked);
   table.title = fmt::format("Friedman ranks of the algorithms by {} in {}", what, worlds_text(blocked));
@@ -128,8 +128,7 @@ std::string p_text(double p) {
   return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", p);
 }
 
-void add_friedman(Table& table, const Scores& ranks, const char* id, bool blocked) {
-  const Friedman f = friedman(ranks);
+void add_friedman(Table& table, const Friedman& f, const char* id, bool blocked) {
   const std::string printed = paper_text(blocked, id, "all", "all", "Iman-Davenport F");
   table.notes.push_back(fmt::format(
       "Friedman: chi-square {:.3f}, {}; Iman and Davenport: F = {:.3f}{}, {}, critical {:.4f} at 5 %: the algorithms "
@@ -138,8 +137,11 @@ void add_friedman(Table& table, const Scores& ranks, const char* id, bool blocke
       p_text(f.iman_p), f.critical_f, f.rejected ? "differ" : "are not shown to differ"));
 }
 
-/// Differences of rank sums, as Tables 10 and 11 have them.
-Table matrix_table(const Lsd& lsd, const char* id, const char* what, bool blocked) {
+constexpr const char* kUnprotected =
+    "LSD marks nothing here: it is for when the test by ranks finds that the algorithms differ, which it does not.";
+
+/// Differences of rank sums, as Tables 10 and 11 have them. `differ`: Friedman's test found that the algorithms do.
+Table matrix_table(const Lsd& lsd, bool differ, const char* id, const char* what, bool blocked) {
   const std::vector<std::string> own = own_algorithms();
   Table table;
   table.id = table_id(id, blocked);
@@ -155,22 +157,23 @@ Table matrix_table(const Lsd& lsd, const char* id, const char* what, bool blocke
     const double difference = std::abs(pair.difference);
     Cell cell = number(difference, difference == std::round(difference) ? 0 : 1,
                        paper_text(blocked, id, label_of(own[a]), label_of(own[b]), "difference"));
-    cell.marked = pair.lsd;
+    cell.marked = differ && pair.lsd;
     table.rows[a][b] = std::move(cell);
   }
   const std::string printed = paper_text(blocked, id, "all", "all", "critical difference");
   const auto kept = std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const Comparison& c) { return c.holm; });
   const auto found = std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const Comparison& c) { return c.lsd; });
   table.notes.push_back(fmt::format(
-      "Bold: more than the least significant difference {:.4f}{}, as the paper has it, one-sided; two-sided it is "
-      "{:.4f}.",
-      lsd.critical, printed.empty() ? "" : fmt::format(" (the paper: {})", printed), lsd.critical_two_sided));
-  table.notes.push_back(
-      fmt::format("{} of {} pairs differ so; with Holm's correction {} do.", found, lsd.pairs.size(), kept));
+      "{} the least significant difference {:.4f}{}, as the paper has it, one-sided; two-sided it is {:.4f}.",
+      differ ? "Bold: more than" : "Not used:", lsd.critical,
+      printed.empty() ? "" : fmt::format(" (the paper: {})", printed), lsd.critical_two_sided));
+  table.notes.push_back(fmt::format("{} of {} pairs differ {}; with Holm's correction {} do.", found, lsd.pairs.size(),
+                                    differ ? "so" : "by more", kept));
+  if (!differ) table.notes.emplace_back(kUnprotected);
   return table;
 }
 
-Table pairs_table(const Lsd& lsd, const char* id, const char* what, bool blocked) {
+Table pairs_table(const Lsd& lsd, bool differ, const char* id, const char* what, bool blocked) {
   const std::vector<std::string> own = own_algorithms();
   Table table;
   table.id = table_id(id, blocked);
@@ -180,7 +183,7 @@ Table pairs_table(const Lsd& lsd, const char* id, const char* what, bool blocked
   table.label_columns = 2;
   for (const Comparison& pair : lsd.pairs) {
     Cell difference = number(pair.difference, pair.difference == std::round(pair.difference) ? 0 : 1);
-    difference.marked = pair.lsd;
+    difference.marked = differ && pair.lsd;
     Cell corrected = number(pair.p_holm, 5);
     corrected.marked = pair.holm;
     table.rows.push_back({label(label_of(own[static_cast<std::size_t>(pair.a)])),
@@ -190,6 +193,7 @@ Table pairs_table(const Lsd& lsd, const char* id, const char* what, bool blocked
   table.notes.push_back(
       "Positive: the second is the better one. Bold: significant, by LSD as the paper has it, one-sided at 5 %, and by "
       "Holm. p is two-sided.");
+  if (!differ) table.notes.emplace_back(kUnprotected);
   return table;
 }
 
@@ -232,17 +236,18 @@ std::vector<Table> rank_tables(const Selection& selection, bool blocked) {
     const std::optional<Scores> found = scores(selection, ids.criterion, blocked);
     if (!found) continue;
     const Scores by_world = friedman_ranks(*found);
-    Table table = rank_table(selection, *found, ids.ranks, ids.what, blocked);
-    add_friedman(table, by_world, ids.ranks, blocked);
+    const Friedman test = friedman(by_world);
+    Table table = rank_table(*found, ids.ranks, ids.what, blocked);
+    add_friedman(table, test, ids.ranks, blocked);
     if (ids.criterion == Criterion::kLength && blocked)
       table.notes.push_back("Who fails less often ranks first, by mean SLR where that is equal.");
     if (ids.criterion == Criterion::kLength)
-      table.notes.push_back(fmt::format("Means that differ by less than {:g} count as equal.", kSameSlr));
+      table.notes.push_back(fmt::format("Means are ranked in steps of {:g}.", kSameSlr));
     if (ids.criterion == Criterion::kTime) table.notes.push_back(timing_note(selection));
     ranks.push_back(std::move(table));
     const Lsd lsd = fisher_lsd(by_world);
-    comparisons.push_back(matrix_table(lsd, ids.matrix, ids.what, blocked));
-    comparisons.push_back(pairs_table(lsd, ids.pairs, ids.what, blocked));
+    comparisons.push_back(matrix_table(lsd, test.rejected, ids.matrix, ids.what, blocked));
+    comparisons.push_back(pairs_table(lsd, test.rejected, ids.pairs, ids.what, blocked));
   }
   ranks.insert(ranks.end(), comparisons.begin(), comparisons.end());
   return ranks;

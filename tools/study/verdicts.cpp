@@ -41,6 +41,12 @@ Verdict paths(const Selection& s, std::string_view other, const std::vector<std:
   return judge(differences, resolution);
 }
 
+/// Three digits, no exponent for large ones: "1550", "0.000972".
+std::string brief(double value, bool sign) {
+  if (std::abs(value) >= 1000.0) return sign ? fmt::format("{:+.0f}", value) : fmt::format("{:.0f}", value);
+  return sign ? fmt::format("{:+.3g}", value) : fmt::format("{:.3g}", value);
+}
+
 std::string names_of(const std::vector<std::string>& list) {
   if (list.size() < 2) return list.empty() ? "none" : list.front();
   return fmt::format("{} and {}", fmt::join(list.begin(), list.end() - 1, ", "), list.back());
@@ -52,9 +58,10 @@ std::vector<std::string> subjects(const std::vector<Verdict>& verdicts, Outcome 
   const std::vector<Respect> all = respects();
   for (std::size_t i = 0; i < all.size(); ++i)
     if (verdicts[i].outcome == wanted)
-      list.push_back(wanted == Outcome::kBetter || wanted == Outcome::kWorse
-                         ? fmt::format("{} (by {:.3g}{})", all[i].subject, std::abs(verdicts[i].mean), all[i].unit)
-                         : all[i].subject);
+      list.push_back(
+          wanted == Outcome::kBetter || wanted == Outcome::kWorse
+              ? fmt::format("{} (by {}{})", all[i].subject, brief(std::abs(verdicts[i].mean), false), all[i].unit)
+              : all[i].subject);
   return list;
 }
 
@@ -136,9 +143,10 @@ Table verdict_table(const Selection& selection) {
         continue;
       }
       Cell cell = number(v.mean, 4);
-      cell.text = fmt::format("{:+.3g}", v.mean);
+      cell.text = brief(v.mean, true);
       if (v.pairs > 1)
-        cell.text = fmt::format("{:+.3g} [{:+.3g}, {:+.3g}] {}", v.mean, v.low, v.high, to_string(v.outcome));
+        cell.text = fmt::format("{} [{}, {}] {}", brief(v.mean, true), brief(v.low, true), brief(v.high, true),
+                                to_string(v.outcome));
       cell.marked = v.outcome == Outcome::kWorse;
       row.push_back(std::move(cell));
     }
