@@ -15,7 +15,7 @@ inline config::Settings small_planner() {
   settings.optimizer.population = 12;
   settings.optimizer.iterations = 2;
   settings.optimizer.archive = 10;
-  settings.paper.waypoints = 6;
+  settings.paper.waypoints = 12;
   return settings;
 }
 

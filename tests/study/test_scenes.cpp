@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "planner/indicators.hpp"
 #include "planner/obstacle_motion.hpp"
 #include "planner/random.hpp"
@@ -102,6 +104,56 @@ TEST(ReferenceFront, OfAProblemWithAKnownFrontIsThat) {
   EXPECT_NEAR(front.bounds.nadir[1], 1.0, 1e-2);
   // The area above the front in the unit square is 5/6; the strips to 1.1 add 0.21.
   EXPECT_NEAR(front.hypervolume, 5.0 / 6.0 + 0.21, 1e-3);
+}
+
+/// f1 = f2 = u² + v²: one point is best in both.
+class OnePoint final : public planner::Problem {
+ public:
+  [[nodiscard]] int dimension() const override { return 2; }
+  [[nodiscard]] int objectives() const override { return 2; }
+  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
+  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
+  void evaluate(std::span<const double> x, std::span<planner::Cost> costs) const override {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const double f = x[2 * i] * x[2 * i] + x[2 * i + 1] * x[2 * i + 1];
+      costs[i].f = {f, f, 0.0};
+    }
+  }
+
+ private:
+  std::array<double, 2> lower_{-1.0, -1.0}, upper_{2.0, 2.0};
+};
+
+TEST(ReferenceFront, OfAProblemWithOneBestPointIsThatPoint) {
+  const ReferenceFront front = search_reference(OnePoint());
+  ASSERT_EQ(front.points.size(), 1U);
+  EXPECT_NEAR(front.points[0][0], 0.0, 1e-4);
+}
+
+/// The worlds of some of these seeds have blocked waypoints without a way, and ones whose best way is a single one.
+TEST(FrontSteps, OfABlockedWorldHaveRoomAndFrontsWhateverTheSeed) {
+  const config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Scenes scenes(seed);
+    const auto steps = front_steps(scenes.world(hardest_world(true), 0), settings.paper, true);
+    ASSERT_EQ(steps.size(), kFrontSteps);
+    for (const FrontStep& step : steps) {
+      const auto& bounds = step.reference.bounds;
+      EXPECT_GT(bounds.nadir[0] - bounds.ideal[0], 0.01) << seed << ", waypoint " << step.station;
+      // No penalty: |steering angle| − φ_max is no more than this.
+      EXPECT_LT(bounds.ideal[1], std::numbers::pi * (1.0 - settings.paper.steering_limit_deg / 180.0))
+          << seed << ", " << step.station;
+    }
+  }
+}
+
+TEST(FrontSteps, AreRefusedWhereThereAreNoFronts) {
+  config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
+  settings.paper.lateral_range = 1e-3;
+  const Scenes scenes(1);
+  for (const bool blocked : {false, true})
+    EXPECT_THROW(static_cast<void>(front_steps(scenes.world(hardest_world(blocked), 0), settings.paper, blocked)),
+                 std::invalid_argument);
 }
 
 TEST(FrontSteps, HaveFrontsThatNoRandomPointBeats) {

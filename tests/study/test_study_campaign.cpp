@@ -76,7 +76,7 @@ TEST(Runs, SpendWhatTheyAreAllowedAndSayHowTheFrontGrew) {
         EXPECT_EQ(r.value(key::kEvaluations), search * kFrontSteps) << job.name();
         break;
       case RunKind::kPath:
-        EXPECT_EQ(r.value(key::kEvaluations), search * 4) << job.name();
+        EXPECT_EQ(r.value(key::kEvaluations), search * (setting.planner.paper.waypoints - 2)) << job.name();
         break;
       case RunKind::kAnytime:
         EXPECT_EQ(r.series.at(key::kEvaluationsAt).front(), job.variant.population) << job.name();

@@ -26,7 +26,7 @@ BAD_USAGE = [
     (["--shard", "3/2"], ["--shard", "'3/2'", "K/N"]),
     (["--threads", "0"], ["--threads", "0"]),
     (["--set", "optimizer.populaton=1"], ["optimizer.populaton"]),
-    (["--set", "paper.waypoints=4"], ["paper.waypoints", "6 or more"]),
+    (["--set", "paper.waypoints=4"], ["paper.waypoints", "7 or more"]),
     (["--set", "optimizer.population=8", "--set", "optimizer.slaves=2"], ["PMOMVO-10", "population: 8"]),
     (["--out", "/proc/no/such"], ["--out", "/proc/no/such"]),
     (["--merge", "no-such-folder"], ["no-such-folder", "cannot be read"]),

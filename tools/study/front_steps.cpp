@@ -26,7 +26,12 @@ constexpr double kMargin = 0.05;         // of the front's extent, by which what
 constexpr std::size_t kSearched = 3000;  // points that are searched about
 constexpr std::size_t kKept = 400;       // points of the front
 constexpr Point2 kReferencePoint{1.1, 1.1};
-constexpr double kBeside = 0.8;  // m, where the vehicle is
+constexpr int kFirstBlocked =
+    2;  // station that may be a step of a blocked world; the last is the one before the target
+constexpr int kLeastWaypoints = kFirstBlocked + static_cast<int>(kFrontSteps) + 1;
+constexpr int kRoomGrid = 65;
+constexpr double kLeastExtent = 0.01;  // m and rad, of a front in each objective
+constexpr double kBeside = 0.8;        // m, where the vehicle is
 constexpr double kAbove = 0.4;
 constexpr double kTurned = 35.0 * std::numbers::pi / 180.0;
 
@@ -64,8 +69,8 @@ std::vector<Sample> nearly_non_dominated(const std::vector<Sample>& sorted, doub
   std::vector<Sample> kept;
   std::size_t before = 0;  // of the front, those better in the first objective by the margin
   for (const Sample& s : sorted) {
-    while (before < front.size() && front[before].f[0] <= s.f[0] - margin[0]) ++before;
-    if (before == 0 || front[before - 1].f[1] > s.f[1] - margin[1]) kept.push_back(s);
+    while (before < front.size() && front[before].f[0] < s.f[0] - margin[0]) ++before;
+    if (before == 0 || front[before - 1].f[1] >= s.f[1] - margin[1]) kept.push_back(s);
   }
   return kept;
 }
@@ -128,20 +133,50 @@ FrontStep prepared(const World& world, const planner::PaperSettings& settings, i
   return step;
 }
 
-/// The stations whose shortest way is blocked most, in flight order.
-std::vector<int> blocked_stations(const World& world, const planner::PaperSettings& settings) {
-  std::vector<std::pair<double, int>> found;
-  for (int station = 2; station < settings.waypoints - 1; ++station) {
+double side_of(int station) {
+  return station % 2 == 0 ? 1.0 : -1.0;
+}
+
+/// Whether some waypoint of the box holds the constraints: where none does, the front is the penalties'.
+bool has_room(const planner::WaypointProblem& problem) {
+  const auto low = problem.lower(), high = problem.upper();
+  for (int i = 0; i < kRoomGrid; ++i)
+    for (int j = 0; j < kRoomGrid; ++j)
+      if (problem.violation(problem.waypoint(low[0] + (high[0] - low[0]) * i / (kRoomGrid - 1),
+                                             low[1] + (high[1] - low[1]) * j / (kRoomGrid - 1))) == 0.0)
+        return true;
+  return false;
+}
+
+/// Searches the step's reference front. False where there is none to compare others with: no room, or hardly more than
+/// a point.
+bool find_reference(FrontStep& step) {
+  if (!has_room(step.problem)) return false;
+  step.reference = search_reference(step.problem);
+  const planner::FrontBounds& b = step.reference.bounds;
+  return std::min(b.nadir[0] - b.ideal[0], b.nadir[1] - b.ideal[1]) > kLeastExtent;
+}
+
+/// The steps whose shortest way is blocked most, if at all, of those that have a front; in flight order.
+std::vector<FrontStep> most_blocked_steps(const World& world, const planner::PaperSettings& settings) {
+  std::vector<std::pair<double, FrontStep>> found;
+  for (int station = kFirstBlocked; station < settings.waypoints - 1; ++station) {
     double violation = 0.0;
-    static_cast<void>(prepared(world, settings, station, station % 2 == 0 ? 1.0 : -1.0, violation));
-    found.emplace_back(-violation, station);
+    FrontStep step = prepared(world, settings, station, side_of(station), violation);
+    found.emplace_back(violation, std::move(step));
   }
-  std::sort(found.begin(), found.end());
-  std::vector<int> stations;
-  stations.reserve(kFrontSteps);
-  for (std::size_t i = 0; i < kFrontSteps; ++i) stations.push_back(found[i].second);
-  std::sort(stations.begin(), stations.end());
-  return stations;
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<FrontStep> steps;
+  for (auto& [violation, step] : found) {
+    if (steps.size() == kFrontSteps) break;
+    if (find_reference(step)) steps.push_back(std::move(step));
+  }
+  if (steps.size() < kFrontSteps)
+    throw std::invalid_argument("the blocked world has fronts to compare at " + std::to_string(steps.size()) +
+                                " waypoints, and " + std::to_string(kFrontSteps) +
+                                " are needed: another --seed or other parameters of the section paper");
+  std::sort(steps.begin(), steps.end(), [](const FrontStep& a, const FrontStep& b) { return a.station < b.station; });
+  return steps;
 }
 
 }  // namespace
@@ -191,20 +226,17 @@ Indicators indicators(const std::vector<Point2>& front, const ReferenceFront& re
 }
 
 std::vector<FrontStep> front_steps(const World& world, const planner::PaperSettings& settings, bool blocked) {
-  if (settings.waypoints < static_cast<int>(kFrontSteps) + 2)
-    throw std::invalid_argument("paper.waypoints: the study needs " + std::to_string(kFrontSteps + 2) + " or more");
-  std::vector<int> stations;
-  if (blocked) {
-    stations = blocked_stations(world, settings);
-  } else {
-    for (std::size_t i = 1; i <= kFrontSteps; ++i)
-      stations.push_back(static_cast<int>(i) * settings.waypoints / static_cast<int>(kFrontSteps + 1));
-  }
+  if (settings.waypoints < kLeastWaypoints)
+    throw std::invalid_argument("paper.waypoints: the study needs " + std::to_string(kLeastWaypoints) + " or more");
+  if (blocked) return most_blocked_steps(world, settings);
   std::vector<FrontStep> steps;
-  for (const int station : stations) {
+  for (std::size_t i = 1; i <= kFrontSteps; ++i) {
+    const int station = static_cast<int>(i) * settings.waypoints / static_cast<int>(kFrontSteps + 1);
     double violation = 0.0;
-    steps.push_back(prepared(world, settings, station, station % 2 == 0 ? 1.0 : -1.0, violation));
-    steps.back().reference = search_reference(steps.back().problem);
+    steps.push_back(prepared(world, settings, station, side_of(station), violation));
+    if (!find_reference(steps.back()))
+      throw std::invalid_argument("scenario 5 has no front to compare at waypoint " + std::to_string(station + 1) +
+                                  ": other parameters of the section paper are needed");
   }
   return steps;
 }

@@ -49,8 +49,10 @@ inline constexpr std::size_t kFrontSteps = 4;
 /// to the left and to the right, and has been flying away from the target's direction by 35 degrees (|φ| < φ_max), so
 /// that the shortest way and the straightest differ; at the start of a path they are one, and the front a point.
 /// Obstacles are where they are when the straight flight passes there. In a world of the paper the stations are one
-/// fifth to four fifths of the waypoints; in a blocked one those at which the shortest way violates the constraints
-/// most. Throws std::invalid_argument where the settings have fewer than kFrontSteps + 2 waypoints.
+/// fifth to four fifths of the waypoints. In a blocked one they are those at which the shortest way violates the
+/// constraints most (of some seeds, where they are too few, it is free at the last of them). Everywhere some waypoint
+/// in the box holds the constraints, and the front is no point. Throws std::invalid_argument where the settings have
+/// fewer than 7 waypoints or the world has fewer than kFrontSteps such steps.
 [[nodiscard]] std::vector<FrontStep> front_steps(const World& world, const planner::PaperSettings& settings,
                                                  bool blocked);
 

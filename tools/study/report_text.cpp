@@ -108,7 +108,8 @@ void what_was_run(Sections& out, const Selection& s, const Setting& setting) {
       "Tables 3 to 5 and the anytime curves need one problem that all solve. At the start of a path the straight way "
       "is best in both objectives at once, and its front is a single point. So the steps are taken in flight: the "
       "vehicle is 0.8 m beside and 0.4 m above the straight line and has been turning away from the target by 35 "
-      "degrees, so that the shortest and the straightest way differ:");
+      "degrees, so that the shortest and the straightest way differ. In the blocked world they are the steps whose "
+      "shortest way is blocked most, of those where some way is free and the front is no point:");
   out.list(at);
   std::vector<std::string> sources;
   for (const Algorithm& a : algorithms())
