@@ -124,8 +124,9 @@ int run_merge(const StudyOptions& options, const Printer& printer) {
   study::require_gnuplot();
   const study::Setting setting(results.settings, planner);
   campaign::make_folder(options.out);
-  campaign::write_whole(study::results_path(options.out), study::to_text(results));
   conclude(results, setting, options, printer);
+  // Last, so that a merge that was interrupted can be repeated.
+  campaign::write_whole(study::results_path(options.out), study::to_text(results));
   const std::size_t all = study::jobs_of(results.settings).size();
   if (results.runs.size() == all) return kExitReached;
   printer.line(fmt::format("{} of {} runs are missing: the same settings with --out {} --resume make them",

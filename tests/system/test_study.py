@@ -6,6 +6,7 @@
 
 import csv
 import json
+import os
 import subprocess
 
 from campaigns import Campaigns, change_seed, in_scratch, refused
@@ -96,7 +97,13 @@ def same_however(study):
         study.make(f"part{part}", *SMALL, "--shard", f"{part}/2")
     said = study.make("incomplete", "--merge", "part2", status=1)
     check("--resume" in said, "one part alone is incomplete, which is said")
-    study.make("merged", "--merge", "part2", "part1")
+    fake = study.folder / "bin" / "gnuplot"
+    fake.parent.mkdir()
+    fake.write_text("#!/bin/sh\nexit 1\n")
+    fake.chmod(0o755)
+    path = {**os.environ, "PATH": f"{fake.parent}:{os.environ['PATH']}"}
+    refused(study.run("--out", "merged", "--merge", "part2", "part1", environment=path), ["gnuplot failed"])
+    study.make("merged", "--merge", "part2", "part1")  # what failed before it ended can be repeated
     check((study.runs("merged"), study.tables("merged")) == whole, "two shards merged are the whole")
     refused(study.run("--out", "merged", "--merge", "part1"), ["merged", "holds a campaign"])
     change_seed(study.folder / "part2" / "runs.jsonl")
