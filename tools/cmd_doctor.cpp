@@ -100,6 +100,7 @@ std::string verdict(const Checks& checks) {
 
 int run(const DoctorOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"MISSION", options.mission}}, {{"--json", options.common.json}});
   const config::Mission mission = config::load_mission(options.mission);
   catch_signals();
   const bridge::SteadyClock clock;

@@ -138,6 +138,8 @@ int exit_code(const bridge::FlightSummary& flight) {
 
 int run(const FlyOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"MISSION", options.mission}},
+                   {{"--log", options.log}, {"--json", options.common.json}, {"--report", options.report}});
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Settings settings = options.common.settings();

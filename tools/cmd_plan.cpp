@@ -120,6 +120,7 @@ Json path_json(const planner::TimedPath& path) {
 
 int run(PlanOptions options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"SCENARIO", options.scenario}}, {{"--json", options.common.json}});
   config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   const bool paper = options.mode == "paper";

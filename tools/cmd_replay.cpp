@@ -189,6 +189,8 @@ int replay_flight(const ReplayOptions& options) {
 }
 
 int run(const ReplayOptions& options) {
+  refuse_same_file({{"SCENARIO|FLIGHT.jsonl", options.scenario}},
+                   {{"--log", options.log}, {"--json", options.common.json}, {"--report", options.report}});
   return std::filesystem::path(options.scenario).extension() == ".jsonl" ? replay_flight(options)
                                                                          : replay_scenario(options);
 }

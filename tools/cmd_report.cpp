@@ -48,6 +48,10 @@ int run(const ReportOptions& options) {
   if (options.logs.size() > 1 && options.out.empty())
     throw UsageError("--out: names the page that compares several flights");
   const std::vector<ReportSource> sources = sources_of(options);
+  std::vector<NamedFile> read;
+  for (const std::string& log : options.logs) read.push_back({"FLIGHT.jsonl", log});
+  for (const std::string& summary : options.summaries) read.push_back({"--summary", summary});
+  refuse_same_file(read, {{"--out", options.out}, {"--png", options.png}});
   end_on_signals();
   try {
     if (page) {

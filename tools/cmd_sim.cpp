@@ -233,6 +233,7 @@ std::unique_ptr<sim::Simulator> make_simulator(const config::Scenario& scenario,
 
 int run(const SimOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"SCENARIO", options.scenario}}, {{"--log", options.log}, {"--json", options.common.json}});
   const config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   check_instances(scenario, options);

@@ -78,6 +78,26 @@ CLI::Validator writable_file() {
   return {[](const std::string& text) { return text == "-" ? std::string() : why_unwritable(text); }, ""};
 }
 
+void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
+  namespace fs = std::filesystem;
+  const auto same = [](const NamedFile& a, const NamedFile& b) {
+    if (a.file.empty() || b.file.empty() || a.file == "-" || b.file == "-") return false;
+    std::error_code error;  // of what is not there yet
+    const fs::path one = fs::weakly_canonical(a.file, error), other = fs::weakly_canonical(b.file, error);
+    if (error || one != other) return false;
+    const fs::file_status status = fs::status(one, error);
+    return !fs::exists(status) || fs::is_regular_file(status);
+  };
+  std::vector<NamedFile> taken = read;
+  for (const NamedFile& next : written) {
+    for (const NamedFile& other : taken) {
+      if (same(next, other))
+        throw UsageError(fmt::format("{}: '{}' is {} too; expected another file", next.name, next.file, other.name));
+    }
+    taken.push_back(next);
+  }
+}
+
 void CommonOptions::add_to(CLI::App& app) {
   app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
       ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

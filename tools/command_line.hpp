@@ -39,6 +39,15 @@ CLI::Validator some_name();
 /// too. For CLI::Option::check.
 CLI::Validator writable_file();
 
+/// A file that a command reads or writes, and the option or argument that names it; none where `file` is empty.
+struct NamedFile {
+  std::string name;
+  std::string file;
+};
+/// Throws UsageError where one of `written` is another one of them or one of `read`: what is in it would be lost.
+/// Devices and pipes may be named several times.
+void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
 /// Options that every flying and planning command takes.
 struct CommonOptions {
   std::uint64_t seed = 1;

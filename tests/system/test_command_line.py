@@ -144,6 +144,23 @@ def bad_peers(jink, folder):
     check(log.read_text() == "an earlier flight\n", "the log of an earlier flight is as it was")
 
 
+def same_file(jink, folder):
+    """What is named twice is written over by nothing."""
+    scenario, log = folder / "mine.yaml", folder / "mine.jsonl"
+    scenario.write_text(CROSSING.read_text())
+    jink.run("replay", scenario, "--log", log)
+    both = folder / "both.json"
+    aside = folder / "." / "mine.jsonl"
+    for arguments, name in ((["plan", scenario, "--json", scenario], "--json"), (["replay", scenario, "--log", scenario], "--log"),
+                            (["replay", scenario, "--log", both, "--json", both], "--json"),
+                            (["report", log, "--out", aside], "--out"), (["export", log, "--mcap", log], "--mcap")):
+        before = scenario.read_text(), log.read_text()
+        done = jink.run(*arguments)
+        check(one_line(done, name, "another file"), f"status {done.returncode}: {done.stderr.strip()}")
+        check((scenario.read_text(), log.read_text()) == before and not both.exists(), "everything is as it was")
+    check(jink.run("replay", scenario, "--log", "/dev/null", "--json", "/dev/null").returncode == 0, "a device may be named twice")
+
+
 def odd_outputs(jink, folder):
     """Links, pipes, full and closed streams: nothing is put in another's place, nothing is lost silently."""
     check(jink.summary("plan", CROSSING, "--seed", "010")["seed"] == 10, "--seed 010 is ten")
@@ -357,7 +374,7 @@ def test(program):
         for case in (bad_usage, help_reads, plans, algorithms, paper_slr):
             print(f"== {case.__name__}", flush=True)
             case(jink)
-        for case in (bad_values, bad_peers, odd_outputs, ctrl_c, every_motion, same_bits, team_flight, recorded_flight, outcomes):
+        for case in (bad_values, bad_peers, same_file, odd_outputs, ctrl_c, every_motion, same_bits, team_flight, recorded_flight, outcomes):
             print(f"== {case.__name__}", flush=True)
             case(jink, folder)
 
