@@ -54,9 +54,16 @@ double unix_now() {
 class Teller final : public sim::SimulatorObserver {
  public:
   explicit Teller(BackgroundPrinter& printer) : printer_(printer) {}
-  void write_to(FlightLog* log) { log_ = log; }
+  /// From here on, what was told before included. None: there is no log.
+  void write_to(FlightLog* log) {
+    log_ = log;
+    for (const Event& event : std::exchange(early_, {}))
+      if (log_ != nullptr) log_->on_event(event.t, event.name, event.detail);
+    begun_ = true;
+  }
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(detail);
+    if (!begun_) early_.push_back({t, std::string(name), detail});
     if (log_ != nullptr) log_->on_event(t, name, detail);
   }
   void on_truth(double t, std::span<const sim::VehicleTruth> vehicles, const sim::World& world) override {
@@ -66,6 +73,12 @@ class Teller final : public sim::SimulatorObserver {
  private:
   BackgroundPrinter& printer_;
   FlightLog* log_ = nullptr;
+  struct Event {
+    double t;
+    std::string name, detail;
+  };
+  std::vector<Event> early_;  // told while the simulator was made
+  bool begun_ = false;
 };
 
 std::string mode_text(const sim::Autopilot& autopilot) {
@@ -260,10 +273,9 @@ int run(const SimOptions& options) {
     if (dds) dds->step(k, now, autopilot);
   };
   const std::unique_ptr<sim::Simulator> simulator = make_simulator(scenario, choices, {publish, {&teller}, on_step});
-  if (!options.log.empty()) {  // what another simulator writes is left alone where that has the port
+  if (!options.log.empty())  // what another simulator writes is left alone where that has the port
     log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
-    teller.write_to(log.get());
-  }
+  teller.write_to(log.get());
   introduce(scenario, options, *background);
   run_until_the_end(*simulator, options, *background, writer.get());
   background.reset();  // nothing is said by the simulator from here on

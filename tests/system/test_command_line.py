@@ -142,6 +142,9 @@ def bad_peers(jink, folder):
         done = jink.run("sim", CROSSING, "--instance", 9, "--no-tracks", "--duration", 1, "--log", log)
         check(one_line(done, "--instance 9", "14589", "taken"), f"status {done.returncode}: {done.stderr.strip()}")
     check(log.read_text() == "an earlier flight\n", "the log of an earlier flight is as it was")
+    jink.run("sim", CROSSING, "--no-vehicle", "--no-tracks", "--duration", 0.5, "--log", log)
+    events = [record for record in map(json.loads, log.read_text().splitlines()) if record["type"] == "event"]
+    check(events and events[0]["t"] == 0, f"the log of sim has what happens at once: {events[:1]}")
 
 
 def same_file(jink, folder):
