@@ -147,6 +147,7 @@ Subcommand add_doctor(CLI::App& jink) {
       ->check(number_in(1.0, 600.0))
       ->capture_default_str();
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

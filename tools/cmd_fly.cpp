@@ -209,6 +209,7 @@ Subcommand add_fly(CLI::App& jink) {
   app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log")
       ->check(writable_file());
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

@@ -209,6 +209,7 @@ Subcommand add_plan(CLI::App& jink) {
                   "stop planning after so many ms of wall time (default: no deadline)")
       ->check(number_in(0.001, 1e9));
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

@@ -217,6 +217,7 @@ Subcommand add_replay(CLI::App& jink) {
       ->check(CLI::IsMember(pilot_names()))
       ->capture_default_str();
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options, app] {
             options->own_seed = app->count("--seed") > 0;
             return run(*options);

@@ -331,6 +331,7 @@ Subcommand add_sim(CLI::App& jink) {
       ->check(number_in(0.9, 1.1));
   app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)")->check(writable_file());
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 
