@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kForgetting = 5.0;   // s, in which a tracking error fades to a third
 constexpr double kMarginStep = 0.05;  // m, of a grown margin that is worth saying
+constexpr double kLowStart = 0.1;     // m, below min_height: less is noise
 
 }  // namespace
 
@@ -69,6 +70,9 @@ void Companion::announce(double now) {
   }
   if (supervisor_.phase() != announced_phase_) {
     announced_phase_ = supervisor_.phase();
+    const double start = state_.position.z() + (state_.in_air ? 0.0 : mission_.takeoff_height);
+    if (announced_phase_ == Phase::kEngaging && start < mission_.min_height - kLowStart)
+      event(now, "raised", "a start at " + metres(start) + " is raised to min_height " + metres(mission_.min_height));
     event(now, "phase",
           std::string(to_string(announced_phase_)) +
               (supervisor_.done() ? ": " + std::string(to_string(supervisor_.outcome())) + ", " + supervisor_.reason()

@@ -5,6 +5,7 @@
 
 #include "config/fault_reader.hpp"
 #include "config/vehicle_reader.hpp"
+#include "planner/enclosing_sphere.hpp"
 
 namespace jink::config {
 namespace {
@@ -37,9 +38,12 @@ Shape read_shape(const Map& obstacle) {
   if (const auto radius = obstacle.find("radius")) return SphereShape{radius->number(kSize)};
   if (const auto box = obstacle.find("box")) return BoxShape{read_edges(*box)};
   VertexShape shape;
-  for (const Value& vertex : obstacle.at("vertices", "").list(1, kMostPoints)) {
-    shape.vertices.push_back(vertex.vec3(within(1e3)));
-  }
+  const Value vertices = obstacle.at("vertices", "");
+  for (const Value& vertex : vertices.list(1, kMostPoints)) shape.vertices.push_back(vertex.vec3(within(1e3)));
+  // As a radius has to be: the bridge takes a track without size, or of a giant, for a mistake and leaves it out.
+  const double radius = planner::smallest_enclosing_sphere(shape.vertices).radius;
+  if (!kSize.contains(radius))
+    vertices.fail("has an enclosing sphere of radius " + number_text(radius) + "; expected one in " + kSize.text());
   return shape;
 }
 

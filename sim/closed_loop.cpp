@@ -140,11 +140,13 @@ class Flight {
   }
 
   bool turn_companions(double t) {
+    const bool interrupted = options_.interrupted && options_.interrupted();
     bool going = false;
     for (std::size_t k = 0; k < members_.size(); ++k) {
       Member& member = *members_[k];
       if (member.over) continue;
       member.link.send_telemetry();
+      if (interrupted) member.companion.interrupt(t);
       member.over = !member.companion.step(t);
       if (member.over) judge_.close(k);
       going = going || !member.over;

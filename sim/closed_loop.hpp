@@ -26,6 +26,7 @@ struct ClosedLoopOptions {
   std::vector<TruthObserver*> truth_observers;
   /// Makes the planner of the flight, from its settings and the latency in s; empty: jink's own (VirtualPlanner).
   std::function<std::unique_ptr<bridge::PlannerTask>(const bridge::PlannerTaskSettings&, double)> planner;
+  std::function<bool()> interrupted;  ///< asked at every turn: true ends the flights as Ctrl-C does; may be empty
 };
 
 /// What happened, judged by the true motion.

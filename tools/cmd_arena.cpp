@@ -227,9 +227,9 @@ Subcommand add_arena(CLI::App& jink) {
   app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
       ->capture_default_str();
   app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
-      ->check(CLI::Range(1, campaign::kMostRuns))
+      ->transform(whole_number(1, campaign::kMostRuns))
       ->capture_default_str();
-  app->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  app->add_option("--out", options->out, "folder for the results")->check(some_name())->capture_default_str();
   app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
   app->add_option("--shard", options->shard,
                   "K/N: fly the K-th of N parts, for several machines; --merge puts them together")

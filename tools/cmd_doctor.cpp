@@ -100,6 +100,7 @@ std::string verdict(const Checks& checks) {
 
 int run(const DoctorOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"MISSION", options.mission}}, {{"--json", options.common.json}});
   const config::Mission mission = config::load_mission(options.mission);
   catch_signals();
   const bridge::SteadyClock clock;
@@ -107,7 +108,7 @@ int run(const DoctorOptions& options) {
   try {
     link = std::make_unique<bridge::MavsdkLink>(mission.connection, clock);
   } catch (const std::runtime_error& error) {
-    throw UsageError(error.what());
+    throw UsageError(options.mission + ": key 'connection': " + error.what());
   }
   std::stop_source stop;
   const std::jthread interrupts([&stop](const std::stop_token& end) {
@@ -143,9 +144,10 @@ Subcommand add_doctor(CLI::App& jink) {
   const auto options = std::make_shared<DoctorOptions>();
   app->add_option("MISSION", options->mission, "mission file")->required();
   app->add_option("--seconds", options->seconds, "how long to wait for the autopilot, and then to listen; 1 to 600")
-      ->check(CLI::Range(1.0, 600.0))
+      ->check(number_in(1.0, 600.0))
       ->capture_default_str();
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

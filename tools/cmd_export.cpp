@@ -18,6 +18,8 @@ struct ExportOptions {
 int run(const ExportOptions& options) {
   const std::string file =
       options.mcap.empty() ? std::filesystem::path(options.log).replace_extension(".mcap").string() : options.mcap;
+  refuse_same_file({{"FLIGHT.jsonl", options.log}}, {{"--mcap", file}});
+  end_on_signals();
   try {
     const ExportResult result = export_mcap(options.log, file);
     fmt::print("{}: {} messages\n", std::filesystem::absolute(file).string(), result.messages);

@@ -138,6 +138,8 @@ int exit_code(const bridge::FlightSummary& flight) {
 
 int run(const FlyOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"MISSION", options.mission}},
+                   {{"--log", options.log}, {"--json", options.common.json}, {"--report", options.report}});
   if (!options.report.empty() && options.log.empty())
     throw UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Settings settings = options.common.settings();
@@ -151,13 +153,15 @@ int run(const FlyOptions& options) {
   std::vector<bridge::FlightObserver*> observers{&teller, &live};
   std::unique_ptr<FlightLog> log;
   std::unique_ptr<bridge::MavsdkLink> link;
-  if (!options.log.empty()) log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
   try {
     link = std::make_unique<bridge::MavsdkLink>(mission.connection, clock);
   } catch (const std::runtime_error& error) {
-    throw UsageError(error.what());
+    throw UsageError(options.mission + ": key 'connection': " + error.what());
   }
-  if (log) observers.push_back(log.get());
+  if (!options.log.empty()) {  // an earlier flight's log outlives a mistyped connection
+    log = std::make_unique<FlightLog>(options.log, mission_header(mission, options, settings));
+    observers.push_back(log.get());
+  }
   const std::jthread discovery([&link](const std::stop_token& stop) {
     while (!stop.stop_requested() && !link->wait_for_autopilot(1.0, stop)) {
     }
@@ -201,9 +205,11 @@ Subcommand add_fly(CLI::App& jink) {
   CLI::App* app = jink.add_subcommand("fly", "fly a mission against the simulator, PX4 SITL or a vehicle");
   const auto options = std::make_shared<FlyOptions>();
   app->add_option("MISSION", options->mission, "mission file")->required();
-  app->add_option("--log", options->log, "write a flight log (JSON Lines)");
-  app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log");
+  app->add_option("--log", options->log, "write a flight log (JSON Lines)")->check(writable_file());
+  app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log")
+      ->check(writable_file());
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

@@ -120,16 +120,19 @@ Json path_json(const planner::TimedPath& path) {
 
 int run(PlanOptions options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"SCENARIO", options.scenario}}, {{"--json", options.common.json}});
   config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   const bool paper = options.mode == "paper";
   const Knobs k = knobs(settings, paper);
   apply(options, k);
 
+  end_on_signals();
   planner::WorkerPool pool(options.common.thread_count());
   const auto begun = std::chrono::steady_clock::now();
   const planner::Plan plan = plan_scenario(options, scenario, settings, pool, printer);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  catch_signals();  // what is written now is not cut off
 
   const std::string outcome = outcome_of(plan);
   const double length = planner::path_length(plan.path);
@@ -192,20 +195,21 @@ Subcommand add_plan(CLI::App& jink) {
          "pmomvo takes --slaves and --sharing, pmomvo-M has M slaves; the others are those it is compared with")
       ->check(CLI::IsMember(algorithm_names()))
       ->capture_default_str();
-  app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->check(CLI::Range(1, 64));
-  app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")->check(CLI::Range(0, 1000));
+  app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->transform(whole_number(1, 64));
+  app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")->transform(whole_number(0, 1000));
   app->add_option("--population", options->population,
                   "universes of all slaves together, or the population, 1 to 100000")
-      ->check(CLI::Range(1, 100000));
+      ->transform(whole_number(1, 100000));
   app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")
-      ->check(CLI::Range(1, 1000000));
+      ->transform(whole_number(1, 1000000));
   app->add_option("--waypoints", options->waypoints,
                   "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
-      ->check(CLI::Range(1, 1000));
+      ->transform(whole_number(1, 1000));
   app->add_option("--deadline-ms", options->deadline_ms,
                   "stop planning after so many ms of wall time (default: no deadline)")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(number_in(0.001, 1e9));
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

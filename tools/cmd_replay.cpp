@@ -53,6 +53,8 @@ int replay_scenario(const ReplayOptions& options) {
   sim::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();
+  catch_signals();
+  loop.interrupted = interrupted;
   std::optional<BackgroundPrinter> background(printer);
   FaultPrinter faults(*background);
   const config::Mission mission = sim::mission_of(scenario);
@@ -158,6 +160,7 @@ int replay_flight(const ReplayOptions& options) {
   if (!options.log.empty() || !options.report.empty())
     throw UsageError(std::string(options.log.empty() ? "--report" : "--log") +
                      ": a replayed log writes none; `jink report FLIGHT.jsonl` makes a report of it");
+  end_on_signals();
   std::optional<FlightRecording> flight;
   FlightComparison comparison;
   try {
@@ -179,12 +182,15 @@ int replay_flight(const ReplayOptions& options) {
                                 " plans have no record of what they were made from (written by an older jink)"
                           : std::string(": holds no plans; logs of `jink replay` and `jink fly` do")));
   }
+  catch_signals();  // what is written now is not cut off
   write_json(options.common.json, comparison_json(*flight, comparison));
   describe(*flight, comparison, printer);
   return comparison.differences.empty() ? kExitReached : kExitFailed;
 }
 
 int run(const ReplayOptions& options) {
+  refuse_same_file({{"SCENARIO|FLIGHT.jsonl", options.scenario}},
+                   {{"--log", options.log}, {"--json", options.common.json}, {"--report", options.report}});
   return std::filesystem::path(options.scenario).extension() == ".jsonl" ? replay_flight(options)
                                                                          : replay_scenario(options);
 }
@@ -205,12 +211,13 @@ Subcommand add_replay(CLI::App& jink) {
   const auto options = std::make_shared<ReplayOptions>();
   app->add_option("SCENARIO|FLIGHT.jsonl", options->scenario, "scenario file, or flight log of `replay` or `fly`")
       ->required();
-  app->add_option("--log", options->log, "write a flight log (JSON Lines)");
-  app->add_option("--report", options->report, "write an HTML flight report; needs --log");
+  app->add_option("--log", options->log, "write a flight log (JSON Lines)")->check(writable_file());
+  app->add_option("--report", options->report, "write an HTML flight report; needs --log")->check(writable_file());
   app->add_option("--pilot", options->pilot, "who plans: jink, or one of its rivals in `jink arena`")
       ->check(CLI::IsMember(pilot_names()))
       ->capture_default_str();
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options, app] {
             options->own_seed = app->count("--seed") > 0;
             return run(*options);

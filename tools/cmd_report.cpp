@@ -48,6 +48,11 @@ int run(const ReportOptions& options) {
   if (options.logs.size() > 1 && options.out.empty())
     throw UsageError("--out: names the page that compares several flights");
   const std::vector<ReportSource> sources = sources_of(options);
+  std::vector<NamedFile> read;
+  for (const std::string& log : options.logs) read.push_back({"FLIGHT.jsonl", log});
+  for (const std::string& summary : options.summaries) read.push_back({"--summary", summary});
+  refuse_same_file(read, {{"--out", options.out}, {"--png", options.png}});
+  end_on_signals();
   try {
     if (page) {
       const std::string html = options.out.empty()
@@ -70,13 +75,16 @@ Subcommand add_report(CLI::App& jink) {
       "report", "make a self-contained HTML page of one or more flight logs, or a figure for print of one");
   const auto options = std::make_shared<ReportOptions>();
   app->add_option("FLIGHT.jsonl", options->logs, "flight logs; several stand side by side")->required();
-  app->add_option("--out", options->out, "the page (default: beside the log, .html; needed for several logs)");
+  app->add_option("--out", options->out, "the page (default: beside the log, .html; needed for several logs)")
+      ->check(writable_file());
   app->add_option("--summary", options->summaries,
                   "summary object written by --json, shown on top; may be repeated, in the order of the logs")
       ->allow_extra_args(false);
   app->add_option("--png", options->png,
-                  "a figure of one flight, 180 mm wide at 300 dpi; then the page is written with --out alone");
-  app->add_option("--at", options->at, "the instant that the figure shows, s of the log (default: least clearance)");
+                  "a figure of one flight, 180 mm wide at 300 dpi; then the page is written with --out alone")
+      ->check(writable_file());
+  app->add_option("--at", options->at, "the instant that the figure shows, s of the log (default: least clearance)")
+      ->check(number_in(0.0, 1e9));
   return {app, [options] { return run(*options); }};
 }
 

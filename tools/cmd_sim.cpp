@@ -53,9 +53,17 @@ double unix_now() {
 /// Events to the terminal and the log, the truth to the log.
 class Teller final : public sim::SimulatorObserver {
  public:
-  Teller(BackgroundPrinter& printer, FlightLog* log) : printer_(printer), log_(log) {}
+  explicit Teller(BackgroundPrinter& printer) : printer_(printer) {}
+  /// From here on, what was told before included. None: there is no log.
+  void write_to(FlightLog* log) {
+    log_ = log;
+    for (const Event& event : std::exchange(early_, {}))
+      if (log_ != nullptr) log_->on_event(event.t, event.name, event.detail);
+    begun_ = true;
+  }
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(detail);
+    if (!begun_) early_.push_back({t, std::string(name), detail});
     if (log_ != nullptr) log_->on_event(t, name, detail);
   }
   void on_truth(double t, std::span<const sim::VehicleTruth> vehicles, const sim::World& world) override {
@@ -64,7 +72,13 @@ class Teller final : public sim::SimulatorObserver {
 
  private:
   BackgroundPrinter& printer_;
-  FlightLog* log_;
+  FlightLog* log_ = nullptr;
+  struct Event {
+    double t;
+    std::string name, detail;
+  };
+  std::vector<Event> early_;  // told while the simulator was made
+  bool begun_ = false;
 };
 
 std::string mode_text(const sim::Autopilot& autopilot) {
@@ -221,17 +235,25 @@ void check_instances(const config::Scenario& scenario, const SimOptions& options
                                kLastInstance - static_cast<int>(scenario.vehicles.size())));
 }
 
+std::unique_ptr<sim::Simulator> make_simulator(const config::Scenario& scenario, const sim::SimulatorOptions& options,
+                                               sim::SimulatorParts parts) {
+  try {
+    return std::make_unique<sim::Simulator>(scenario, options, std::move(parts));
+  } catch (const std::runtime_error& error) {
+    throw UsageError(fmt::format("--instance {}: {}", options.instance, error.what()));
+  }
+}
+
 int run(const SimOptions& options) {
   const Printer printer(options.common.json == "-");
+  refuse_same_file({{"SCENARIO", options.scenario}}, {{"--log", options.log}, {"--json", options.common.json}});
   const config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   check_instances(scenario, options);
   catch_signals();
   std::unique_ptr<FlightLog> log;
-  if (!options.log.empty())
-    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
   std::optional<BackgroundPrinter> background(printer);
-  Teller teller(*background, log.get());
+  Teller teller(*background);
   std::unique_ptr<bridge::DdsTrackWriter> writer;  // none: somebody else tells of the obstacles
   if (!options.no_tracks) writer = std::make_unique<bridge::DdsTrackWriter>(options.domain);
   const auto publish = [&](const sim::TrackMessage& message, double now) {
@@ -250,19 +272,22 @@ int run(const SimOptions& options) {
   const auto on_step = [&dds](std::size_t k, double now, sim::Autopilot& autopilot) {
     if (dds) dds->step(k, now, autopilot);
   };
-  sim::Simulator simulator(scenario, choices, {publish, {&teller}, on_step});
+  const std::unique_ptr<sim::Simulator> simulator = make_simulator(scenario, choices, {publish, {&teller}, on_step});
+  if (!options.log.empty())  // what another simulator writes is left alone where that has the port
+    log = std::make_unique<FlightLog>(options.log, scenario_header(scenario, options.common.seed, settings));
+  teller.write_to(log.get());
   introduce(scenario, options, *background);
-  run_until_the_end(simulator, options, *background, writer.get());
+  run_until_the_end(*simulator, options, *background, writer.get());
   background.reset();  // nothing is said by the simulator from here on
   if (log) log->close();
   if (options.no_vehicle) return kExitReached;
-  const auto summary = summary_of(simulator, options);
+  const auto summary = summary_of(*simulator, options);
   write_json(options.common.json, summary);
   const auto& clearance = summary["min_clearance"];
   printer.line(fmt::format("scenario {}: {} ({}), smallest clearance {}", scenario.name,
                            summary["outcome"].get<std::string>(), summary["reason"].get<std::string>(),
                            clearance.is_number() ? fmt::format("{:.2f} m", clearance.get<double>()) : "unlimited"));
-  return simulator.failed() ? kExitFailed : kExitReached;
+  return simulator->failed() ? kExitFailed : kExitReached;
 }
 
 }  // namespace
@@ -273,7 +298,7 @@ Subcommand add_sim(CLI::App& jink) {
   const auto options = std::make_shared<SimOptions>();
   app->add_option("SCENARIO", options->scenario, "scenario file")->required();
   CLI::Option* speed = app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
-                           ->check(CLI::Range(0.5, 20.0))
+                           ->check(number_in(0.5, 20.0))
                            ->capture_default_str();
   app->add_flag("--lockstep", options->lockstep,
                 "as fast as possible; but while a vehicle is armed in OFFBOARD, after every 20 ms of simulated time "
@@ -292,20 +317,21 @@ Subcommand add_sim(CLI::App& jink) {
                 "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
   app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer tells of the obstacles");
   app->add_option("--domain", options->domain, "DDS domain, 0 to 232")
-      ->check(CLI::Range(0, 232))
+      ->transform(whole_number(0, 232))
       ->capture_default_str();
   app->add_option("--instance", options->instance,
                   "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9; further vehicles take N+1 and so on")
-      ->check(CLI::Range(0, 9))
+      ->transform(whole_number(0, 9))
       ->capture_default_str();
   app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(number_in(0.1, 1e6));
   app->add_option("--boot-clock", options->boot_clock,
                   "seconds of the autopilot's clock, by which its messages are stamped, in a simulated one, 0.9 to 1.1 "
                   "(default: 0.987, PX4 SITL's against the wall; 1 with --lockstep)")
-      ->check(CLI::Range(0.9, 1.1));
-  app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)");
+      ->check(number_in(0.9, 1.1));
+  app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)")->check(writable_file());
   options->common.add_to(*app);
+  app->get_option("--json")->check(writable_file());
   return {app, [options] { return run(*options); }};
 }
 

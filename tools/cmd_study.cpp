@@ -154,10 +154,10 @@ Subcommand add_study(CLI::App& jink) {
   app->add_option("--runs", options->runs,
                   fmt::format("runs of each variant, with seeds of their own (default: {}, or {} with --quick)", kRuns,
                               kQuickRuns))
-      ->check(CLI::Range(1, study::kMostStudyRuns));
+      ->transform(whole_number(1, study::kMostStudyRuns));
   app->add_flag("--quick", options->quick,
                 "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
-  app->add_option("--out", options->out, "folder for the results")->capture_default_str();
+  app->add_option("--out", options->out, "folder for the results")->check(some_name())->capture_default_str();
   app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
   app->add_option("--shard", options->shard,
                   "K/N: make the K-th of N parts, for several machines; --merge puts them together")

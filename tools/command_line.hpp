@@ -29,6 +29,25 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The value of an option, checked as it is parsed. For CLI::Option::transform: decimal, so that 010 is ten.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+/// The same for a number that may have a fraction; NaN is in no range. For CLI::Option::check.
+CLI::Validator number_in(double least, double most);
+/// The name of a file or folder: not empty, as an unset variable of a shell is. For CLI::Option::check.
+CLI::Validator some_name();
+/// The name of a file that can be written, found out before anything is done; what is there stays as it is. "-" passes
+/// too. For CLI::Option::check.
+CLI::Validator writable_file();
+
+/// A file that a command reads or writes, and the option or argument that names it; none where `file` is empty.
+struct NamedFile {
+  std::string name;
+  std::string file;
+};
+/// Throws UsageError where one of `written` is another one of them or one of `read`: what is in it would be lost.
+/// Devices and pipes may be named several times.
+void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
 /// Options that every flying and planning command takes.
 struct CommonOptions {
   std::uint64_t seed = 1;
@@ -101,6 +120,11 @@ void require_json(const std::string& file);
 void catch_signals();
 /// True once one came.
 bool interrupted();
+/// From now on they end the process at once, with one line and exit code 1: for work that leaves nothing half done.
+void end_on_signals();
+/// Gives stdin, stdout and stderr that are closed to /dev/null: the next file or socket to be opened would take their
+/// numbers, and what is printed would go there.
+void open_standard_streams();
 
 /// A subcommand: its options are in `app`; `run` does it and returns the exit code.
 struct Subcommand {

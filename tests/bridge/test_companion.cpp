@@ -60,6 +60,25 @@ TEST(Companion, RaisesWaypointsToMinHeightAndSaysSo) {
   EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(5, 0, 1));
 }
 
+TEST(Companion, RaisesALowStartToMinHeightAndSaysSo) {
+  Loop usual;
+  usual.fly();
+  EXPECT_EQ(usual.recorder.count("raised"), 0);
+
+  config::Mission m = Loop::mission();
+  m.takeoff_height = 0.4;
+  Loop climbs(m);
+  climbs.fly();
+  EXPECT_EQ(climbs.recorder.count("raised"), 1);
+  EXPECT_NE(climbs.recorder.last("raised").find("0.4"), std::string::npos) << climbs.recorder.last("raised");
+  EXPECT_GE(climbs.last().position.z(), 1.0);
+
+  Loop flies(m);  // whose take-off height does not matter
+  flies.airborne({0, 0, 0.5}).fly();
+  EXPECT_EQ(flies.recorder.count("raised"), 1);
+  EXPECT_NE(flies.recorder.last("raised").find("0.5"), std::string::npos) << flies.recorder.last("raised");
+}
+
 TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
   Loop loop;
   loop.airborne().fly();

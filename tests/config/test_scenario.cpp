@@ -177,6 +177,8 @@ TEST(LoadScenario, RefusesBadShapes) {
       {"box: [0.8, 0.9, 1.0]", "box: 0.8", 11, "obstacles[1].box", "0.8", "is a number; expected a list"},
       {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[]", 14, "obstacles[4].vertices", "[]", "in [1, 10000]"},
       {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[[0,0,0],[1,0]]", 14, "obstacles[4].vertices[1]", "[1, 0]", "[x, y, z]"},
+      {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[[1,2,3],[1,2,3]]", 14, "obstacles[4].vertices", "[[1, 2, 3], [1, 2, 3]]",
+       "has an enclosing sphere of radius 0; expected one in (0, 1000]"},
       {"[0,1,0]", "[0,.nan,0]", 14, "obstacles[4].vertices[2][1]", ".nan", "not a finite number"},
   };
   for (const BadCase& bad : cases) expect_refused(kValid, bad, load);

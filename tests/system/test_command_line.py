@@ -6,9 +6,15 @@
 
 import json
 import math
+import os
 import pathlib
+import signal
+import socket
+import stat
 import subprocess
 import tempfile
+import threading
+import time
 
 import yaml
 
@@ -43,6 +49,17 @@ BAD_USAGE = [
     (["plan", CROSSING, "--population", "3", "--slaves", "6"], ["--population", "3", "6 or more"]),
     (["plan", CROSSING, "--waypoints", "1", "--mode", "paper"], ["--waypoints", "1", "2 to 1000"]),
     (["plan", CROSSING, "--seed", "-1"], ["--seed", "-1"]),
+    (["plan", CROSSING, "--seed", "18446744073709551616"], ["--seed", "18446744073709551616", "0 to 18446744073709551615"]),
+    (["plan", CROSSING, "--threads", "0x2"], ["--threads", "0x2", "1 to 256"]),
+    (["plan", CROSSING, "--config", ""], ["--config", "empty"]),
+    (["plan", CROSSING, "--json", ""], ["--json", "empty"]),
+    (["replay", CROSSING, "--log", ""], ["--log", "empty"]),
+    (["replay", CROSSING, "--log", "/dev/null", "--report", "/no/such/folder/x.html"], ["--report", "/no/such/folder/x.html"]),
+    (["sim", CROSSING, "--speed", "nan", "--duration", "1"], ["--speed", "nan", "0.5 to 20"]),
+    (["sim", CROSSING, "--duration", "nan"], ["--duration", "nan", "0.1 to 1000000"]),
+    (["sim", CROSSING, "--duration", "1", "--json", "/no/such/folder/x.json"], ["--json", "/no/such/folder/x.json"]),
+    (["doctor", CONFIG / "missions" / "sitl.yaml", "--seconds", "nan"], ["--seconds", "nan", "1 to 600"]),
+    (["fly", CONFIG / "missions" / "sitl.yaml", "--json", "/no/such/folder/x.json"], ["--json", "/no/such/folder/x.json"]),
     (["plan", CROSSING, "--set", "horizon.margn=1"], ["horizon.margn", "horizon.margin"]),
     (["plan", CROSSING, "--set", "horizon.margin=-1"], ["horizon.margin", "-1", "[0, 100]"]),
     (["plan", CROSSING, "--json", "/no/such/folder/x.json"], ["--json", "/no/such/folder/x.json"]),
@@ -102,6 +119,114 @@ def bad_values(jink, folder):
     done = jink.run("plan", file)
     parts = ["wrong.yaml:", "obstacles[0].radius", "-0.5", "(0, 1000]"]
     check(done.returncode == 2 and all(part in done.stderr for part in parts), done.stderr.strip())
+
+
+def one_line(done, *parts):
+    lines = done.stderr.strip().splitlines()
+    return done.returncode == 2 and len(lines) == 1 and all(str(part) in lines[0] for part in parts)
+
+
+def bad_peers(jink, folder):
+    """What cannot be opened is named by where it was asked for, and an earlier flight's log outlives it."""
+    mission = folder / "mission.yaml"
+    mission.write_text((CONFIG / "missions" / "sitl.yaml").read_text().replace("udpin://127.0.0.1:14540", "serial:///dev/jink-none:57600"))
+    log = folder / "earlier.jsonl"
+    log.write_text("an earlier flight\n")
+    for command in (["doctor", mission], ["fly", mission, "--log", log]):
+        done = jink.run(*command)
+        check(one_line(done, mission, "'connection'", "/dev/jink-none"), f"status {done.returncode}: {done.stderr.strip()}")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        try:
+            other.bind(("0.0.0.0", 14589))
+        except OSError:
+            pass  # another simulator has it, which is as good
+        done = jink.run("sim", CROSSING, "--instance", 9, "--no-tracks", "--duration", 1, "--log", log)
+        check(one_line(done, "--instance 9", "14589", "taken"), f"status {done.returncode}: {done.stderr.strip()}")
+    check(log.read_text() == "an earlier flight\n", "the log of an earlier flight is as it was")
+    jink.run("sim", CROSSING, "--no-vehicle", "--no-tracks", "--duration", 0.5, "--log", log)
+    events = [record for record in map(json.loads, log.read_text().splitlines()) if record["type"] == "event"]
+    check(events and events[0]["t"] == 0, f"the log of sim has what happens at once: {events[:1]}")
+
+
+def same_file(jink, folder):
+    """What is named twice is written over by nothing."""
+    scenario, log = folder / "mine.yaml", folder / "mine.jsonl"
+    scenario.write_text(CROSSING.read_text())
+    jink.run("replay", scenario, "--log", log)
+    both = folder / "both.json"
+    aside = folder / "." / "mine.jsonl"
+    for arguments, name in ((["plan", scenario, "--json", scenario], "--json"), (["replay", scenario, "--log", scenario], "--log"),
+                            (["replay", scenario, "--log", both, "--json", both], "--json"),
+                            (["report", log, "--out", aside], "--out"), (["export", log, "--mcap", log], "--mcap")):
+        before = scenario.read_text(), log.read_text()
+        done = jink.run(*arguments)
+        check(one_line(done, name, "another file"), f"status {done.returncode}: {done.stderr.strip()}")
+        check((scenario.read_text(), log.read_text()) == before and not both.exists(), "everything is as it was")
+    check(jink.run("replay", scenario, "--log", "/dev/null", "--json", "/dev/null").returncode == 0, "a device may be named twice")
+
+
+def odd_outputs(jink, folder):
+    """Links, pipes, full and closed streams: nothing is put in another's place, nothing is lost silently."""
+    check(jink.summary("plan", CROSSING, "--seed", "010")["seed"] == 10, "--seed 010 is ten")
+    target, link, pipe = folder / "target.json", folder / "link.json", folder / "pipe.json"
+    link.symlink_to(target)
+    jink.run("plan", CROSSING, "--json", link)
+    check(link.is_symlink() and json.loads(target.read_text())["format"] == "jink-plan/1", "--json writes where a link leads")
+    os.mkfifo(pipe)
+    received = []
+    reader = threading.Thread(target=lambda: received.append(pipe.read_text()), daemon=True)
+    reader.start()
+    jink.run("plan", CROSSING, "--json", pipe)
+    check(stat.S_ISFIFO(pipe.stat().st_mode), "--json leaves a pipe a pipe")
+    reader.join(10)
+    check(received and json.loads(received[0])["format"] == "jink-plan/1", "--json writes into a pipe")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([jink.program, "plan", CROSSING, "--json", "-"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=120)
+    check(done.returncode == 2 and "--json: stdout cannot be written" in done.stderr, "a full stdout is told")
+    log = folder / "closed.jsonl"
+    subprocess.run(["sh", "-c", '"$0" replay "$1" --log "$2" >&- 2>&-', jink.program, CROSSING, log], timeout=120)
+    check(all(json.loads(line) for line in log.read_text().splitlines()), "what is printed to a closed stdout is not in the log")
+
+
+def ctrl_c(jink, folder):
+    """One line or a summary, exit code 1, no half a file."""
+    log = folder / "interrupted.jsonl"
+    summary = folder / "interrupted.json"
+    far = folder / "far.yaml"
+    far.write_text(yaml.safe_dump({"format": "jink-scenario/1", "name": "far", "start": [0, 0, 2], "target": [90000, 0, 2],
+                                   "vehicle": "ardrone2", "obstacles": []}))
+    for arguments in (["plan", CROSSING, "--mode", "paper", "--iterations", "1000000"], ["replay", far, "--log", log]):
+        process = subprocess.Popen([jink.program, *map(str, arguments), "--json", summary], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(2.0)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        check(process.returncode == 1, f"{arguments[0]}: Ctrl-C ends it with exit status {process.returncode}: {err.strip()}")
+        check("interrupted" in out + err, f"{arguments[0]} says that it was interrupted")
+        check(arguments[0] == "replay" or not summary.exists(), "an interrupted plan leaves no summary")
+    check(json.loads(summary.read_text())["reason"] == "interrupted", "an interrupted replay leaves its summary")
+    text = log.read_text()
+    check(text.endswith("}\n") and all(json.loads(line) for line in text.splitlines()), "and a whole log")
+
+
+def every_motion(jink, folder):
+    """The scenario of contracts, with each shape and motion."""
+    file = folder / "example.yaml"
+    file.write_text(yaml.safe_dump({
+        "format": "jink-scenario/1", "name": "example", "start": [0, 0, 1.5], "target": [20, 0, 1.5], "time_limit": 60,
+        "vehicle": {"radius": 0.30, "length": 0.52, "mass": 0.42, "max_speed": 5.0, "cruise_speed": 3.0,
+                    "max_acceleration": 6.0, "max_jerk": 30.0, "max_climb": 2.0},
+        "world": {"min": [-5, -10, 0], "max": [25, 10, 8]},
+        "sensing": {"range": 20, "rate": 20, "delay": 0, "position_noise": 0, "velocity_noise": 0, "dropout": 0},
+        "obstacles": [
+            {"radius": 0.5, "position": [5, 5, 2], "velocity": [4, -2, 1], "acceleration": [0, 0, 0]},
+            {"box": [0.8, 0.8, 0.8], "motion": {"type": "trefoil", "center": [10, 0, 1], "scale": [1, 1, 1], "slower": 1.1, "offset": 0.3}},
+            {"radius": 0.4, "motion": {"type": "sine", "center": [5, 0, 1], "amplitude": [0, 2, 0], "frequency_hz": [0, 0.2, 0], "phase": [0, 0, 0]}},
+            {"radius": 0.4, "motion": {"type": "bounce", "position": [1, 1, 1], "velocity": [1, 2, 0], "min": [0, -5, 0], "max": [20, 5, 4]}},
+            {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+             "motion": {"type": "waypoints", "times": [0, 5, 9], "points": [[3, 3, 1], [6, 0, 1], [9, 3, 1]]}}]}))
+    for arguments in (["plan"], ["plan", "--mode", "paper"], ["replay"]):
+        done = jink.summary(arguments[0], file, *arguments[1:])
+        check(done["outcome"] == "reached" and done["min_clearance"] > 0, f"{' '.join(arguments)}: clearance {done['min_clearance']:.2f} m")
 
 
 def help_reads(jink):
@@ -253,7 +378,7 @@ def test(program):
         for case in (bad_usage, help_reads, plans, algorithms, paper_slr):
             print(f"== {case.__name__}", flush=True)
             case(jink)
-        for case in (bad_values, same_bits, team_flight, recorded_flight, outcomes):
+        for case in (bad_values, bad_peers, same_file, odd_outputs, ctrl_c, every_motion, same_bits, team_flight, recorded_flight, outcomes):
             print(f"== {case.__name__}", flush=True)
             case(jink, folder)
 

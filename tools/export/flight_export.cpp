@@ -14,6 +14,7 @@
 #include "tools/export/mcap_writer.hpp"
 #include "tools/report/event_tone.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/whole_file.hpp"
 
 namespace jink::tools {
 namespace {
@@ -310,17 +311,17 @@ class FlightExport {
 
 ExportResult export_mcap(const std::filesystem::path& log, const std::filesystem::path& mcap) {
   const FlightData flight = read_flight(log);
-  const std::filesystem::path part = mcap.string() + "." + std::to_string(::getpid()) + ".part";
+  const std::filesystem::path part = unfinished_name(mcap, "." + std::to_string(::getpid()) + ".part");
   std::uint64_t messages = 0;
   try {
     McapWriter writer(part, "", "jink");
     FlightExport(flight, writer).run();
     writer.close();
     messages = writer.messages();
-    std::filesystem::rename(part, mcap);
+    if (part != mcap) std::filesystem::rename(part, mcap);
   } catch (const std::runtime_error& error) {  // filesystem_error is one
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);
+    if (part != mcap) std::filesystem::remove(part, ignored);
     throw std::runtime_error(mcap.string() + ": cannot write the recording: " + error.what());
   }
   return {messages, flight.lines, flight.cut_off + flight.not_finite + flight.unknown};

@@ -12,6 +12,7 @@
 #include "tools/report/flight_data.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/report/template.hpp"
+#include "tools/whole_file.hpp"
 
 namespace jink::tools {
 namespace {
@@ -48,10 +49,10 @@ std::string embeddable(const std::string& json) {
 }  // namespace
 
 void write_whole(const std::filesystem::path& file, std::string_view bytes, const std::string& what) {
-  const std::filesystem::path part = file.string() + "." + std::to_string(::getpid()) + ".part";
+  const std::filesystem::path part = unfinished_name(file, "." + std::to_string(::getpid()) + ".part");
   const auto fail = [&](const std::string& text) {
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);
+    if (part != file) std::filesystem::remove(part, ignored);
     throw std::runtime_error(file.string() + ": " + text);
   };
   std::ofstream out(part, std::ios::binary);
@@ -59,6 +60,7 @@ void write_whole(const std::filesystem::path& file, std::string_view bytes, cons
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (!out) fail(what + " could not be written to its end");
+  if (part == file) return;
   std::error_code error;
   std::filesystem::rename(part, file, error);
   if (error) fail("cannot write " + what + ": " + error.message());

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace jink::tools {
+
+/// Where the content of `file` is written before a rename puts it in place: beside it, with `suffix`. A device, a pipe
+/// or a link is written itself, and the result is `file`: a rename would put a plain file in its place.
+inline std::filesystem::path unfinished_name(const std::filesystem::path& file, std::string_view suffix = ".part") {
+  std::error_code ignored;  // what cannot be examined is not there
+  const std::filesystem::file_status status = std::filesystem::symlink_status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return file;
+  std::filesystem::path unfinished = file;
+  unfinished += suffix;
+  return unfinished;
+}
+
+}  // namespace jink::tools
