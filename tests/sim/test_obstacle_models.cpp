@@ -103,7 +103,8 @@ TEST(BounceMotion, IsExactAfterABillionSeconds) {
 TEST(BounceMotion, LosesNoDigitsWhenSpeedAndTimeAreNotRound) {
   const config::BounceMotion motion{{0.25, 0, 0}, {0.1, 0, 0}, {0, 0, 0}, {1.5, 0, 0}};
   const double t = 1e8 + 0.3;
-  const auto exact = static_cast<double>(std::fmod(0.25L + static_cast<long double>(0.1) * static_cast<long double>(t), 3.0L));
+  const auto exact =
+      static_cast<double>(std::fmod(0.25L + static_cast<long double>(0.1) * static_cast<long double>(t), 3.0L));
   EXPECT_NEAR(state_at(motion, t).position.x(), exact <= 1.5 ? exact : 3.0 - exact, 2e-12);
 }
 
