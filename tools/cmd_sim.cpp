@@ -224,6 +224,8 @@ void introduce(const config::Scenario& scenario, const SimOptions& options, Back
   const bool on_dds = !options.no_tracks || options.dds_vehicle;
   if (const std::string trouble = bridge::discovery_trouble(options.domain); on_dds && !trouble.empty())
     printer.line("warning: " + trouble);
+  if (options.no_vehicle && !options.common.json.empty())
+    printer.line("warning: --json: nothing is written, without a vehicle there is no flight to sum up");
   printer.line("Ctrl-C ends it");
 }
 

@@ -178,12 +178,7 @@ void Printer::live(const std::string& text) const {
 
 void require_json(const std::string& file) {
   if (file.empty() || file == "-") return;
-  const std::string unfinished = file + ".part";
-  std::error_code error;
-  const bool opened = std::ofstream(unfinished).is_open();
-  std::filesystem::remove(unfinished, error);
-  if (!opened || std::filesystem::is_directory(file, error))
-    throw UsageError("--json: '" + file + "' cannot be written");
+  if (const std::string why = why_unwritable(file); !why.empty()) throw UsageError("--json: " + why);
 }
 
 void write_json(const std::string& file, const nlohmann::ordered_json& summary) {

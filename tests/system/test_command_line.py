@@ -146,6 +146,8 @@ def bad_peers(jink, folder):
     jink.run("sim", CROSSING, "--no-vehicle", "--no-tracks", "--duration", 0.5, "--log", log)
     events = [record for record in map(json.loads, log.read_text().splitlines()) if record["type"] == "event"]
     check(events and events[0]["t"] == 0, f"the log of sim has what happens at once: {events[:1]}")
+    done = jink.run("sim", CROSSING, "--no-vehicle", "--no-tracks", "--duration", 0.5, "--json", folder / "none.json")
+    check("warning: --json" in done.stdout, f"sim says that there is no summary without a vehicle: {done.stdout.strip()}")
 
 
 def same_file(jink, folder):
