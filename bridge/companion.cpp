@@ -45,8 +45,9 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       parts_(std::move(parts)),
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
-      stream_({settings.companion.setpoint_lead, settings.companion.acceleration_lead, settings.companion.drag,
-               settings.horizon.braking, mission.vehicle.max_acceleration, flight_volume(mission)}) {
+      stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(),
+               settings.companion.drag, settings.horizon.braking, mission.vehicle.max_acceleration,
+               flight_volume(mission)}) {
   if (mission.intents && parts_.intents != nullptr) {
     team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
   }

@@ -65,7 +65,7 @@ void Companion::move(double now, const Decision& decision) {
   if (unsent_since_ >= 0.0) event(now, "send_works", "setpoints can be sent again");
   unsent_since_ = -1.0;
   for (FlightObserver* observer : parts_.observers) observer->on_setpoint(now, setpoint);
-  const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.acceleration_lead);
+  const double lead = std::max(settings_.companion.setpoint_lead, settings_.companion.committed_acceleration_lead());
   if (unsent_track_ && now + lead >= unsent_from_) {
     const double sent = parts_.clock != nullptr ? parts_.clock->now() : now;
     summary_.track_to_setpoint_ms.push_back(1e3 * (sent - *unsent_track_));

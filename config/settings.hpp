@@ -2,6 +2,7 @@
 // config/planner.yaml: parameters of the planner and of the companion loop.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,7 +20,10 @@ struct CompanionSettings {
   double commitment = 0.2;      ///< from a plan's beginning to its start at the least: the present plan is flown until
                                 ///< then, since the vehicle answers a new acceleration that late
   double setpoint_lead = 0.04;  ///< how far ahead of now the plan is sampled for position and velocity: the transport
-  double acceleration_lead = 0.3;  ///< and for the acceleration: the autopilot's attitude loop and rotors too
+  double acceleration_lead = 0.2;  ///< and for the acceleration: the autopilot's attitude loop and rotors too
+  /// What counts of acceleration_lead. Beyond the commitment a plan may be replaced before it is flown: the vehicle
+  /// would accelerate for motions that never come about.
+  [[nodiscard]] double committed_acceleration_lead() const { return std::min(acceleration_lead, commitment); }
   double drag = 1.0;          ///< 1/s, deceleration per speed that the feed-forward makes up for; PX4's SITL shows 1.0
   double stale_state = 0.2;   ///< age of the vehicle's position at which to brake
   double stale_plan = 0.3;    ///< age of the newest plan at which to brake
