@@ -188,19 +188,7 @@ void write_json(const std::string& file, const nlohmann::ordered_json& summary) 
     if (!(std::cout << text << std::flush)) throw UsageError("--json: stdout cannot be written");
     return;
   }
-  const std::filesystem::path unfinished = unfinished_name(file);
-  {
-    std::ofstream out(unfinished);
-    out << text << std::flush;
-    if (!out) throw UsageError("--json: '" + file + "' cannot be written");
-  }
-  if (unfinished == file) return;
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) {
-    std::filesystem::remove(unfinished, error);
-    throw UsageError("--json: '" + file + "' cannot be written");
-  }
+  if (write_file(file, text)) throw UsageError("--json: '" + file + "' cannot be written");
 }
 
 void catch_signals() {

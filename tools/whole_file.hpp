@@ -2,7 +2,9 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -17,6 +19,23 @@ inline std::filesystem::path unfinished_name(const std::filesystem::path& file, 
   std::filesystem::path unfinished = file;
   unfinished += suffix;
   return unfinished;
+}
+
+/// Writes `bytes` as `file`, whole or not at all (see unfinished_name() of devices and pipes); gives what failed, or
+/// none.
+inline std::error_code write_file(const std::filesystem::path& file, std::string_view bytes) {
+  const std::filesystem::path unfinished = unfinished_name(file);
+  std::error_code error;
+  {
+    std::ofstream out(unfinished, std::ios::binary);
+    out << bytes << std::flush;
+    if (!out) error.assign(errno != 0 ? errno : EIO, std::generic_category());
+  }
+  if (unfinished == file) return error;
+  if (!error) std::filesystem::rename(unfinished, file, error);
+  std::error_code ignored;  // the first failure is what is told
+  if (error) std::filesystem::remove(unfinished, ignored);
+  return error;
 }
 
 }  // namespace jink::tools

@@ -78,26 +78,34 @@ TEST(PapersWorlds, HaveAFreeStraightFlight) {
   }
 }
 
-/// f1 = u² + v², f2 = (u − 1)² + v²: the front is sqrt(f1) + sqrt(f2) = 1.
-class TwoPoints final : public planner::Problem {
+/// Two objectives of u and v.
+class InThePlane final : public planner::Problem {
  public:
+  using Objectives = planner::Point2 (*)(double u, double v);
+  InThePlane(Objectives two, std::array<double, 2> lower, std::array<double, 2> upper)
+      : objectives_(two), lower_(lower), upper_(upper) {}
   [[nodiscard]] int dimension() const override { return 2; }
   [[nodiscard]] int objectives() const override { return 2; }
   [[nodiscard]] std::span<const double> lower() const override { return lower_; }
   [[nodiscard]] std::span<const double> upper() const override { return upper_; }
   void evaluate(std::span<const double> x, std::span<planner::Cost> costs) const override {
     for (std::size_t i = 0; i < costs.size(); ++i) {
-      const double u = x[2 * i], v = x[2 * i + 1];
-      costs[i].f = {u * u + v * v, (u - 1.0) * (u - 1.0) + v * v, 0.0};
+      const auto [f1, f2] = objectives_(x[2 * i], x[2 * i + 1]);
+      costs[i].f = {f1, f2, 0.0};
     }
   }
 
  private:
-  std::array<double, 2> lower_{-1.3, -1.7}, upper_{2.1, 1.9};
+  Objectives objectives_;
+  std::array<double, 2> lower_, upper_;
 };
 
 TEST(ReferenceFront, OfAProblemWithAKnownFrontIsThat) {
-  const ReferenceFront front = search_reference(TwoPoints());
+  // The front is sqrt(f1) + sqrt(f2) = 1.
+  const auto objectives = [](double u, double v) -> planner::Point2 {
+    return {u * u + v * v, (u - 1.0) * (u - 1.0) + v * v};
+  };
+  const ReferenceFront front = search_reference(InThePlane(objectives, {-1.3, -1.7}, {2.1, 1.9}));
   ASSERT_GT(front.points.size(), 100U);
   for (const planner::Point2& p : front.points) EXPECT_NEAR(std::sqrt(p[0]) + std::sqrt(p[1]), 1.0, 1e-2);
   EXPECT_NEAR(front.bounds.ideal[0], 0.0, 1e-6);
@@ -106,26 +114,9 @@ TEST(ReferenceFront, OfAProblemWithAKnownFrontIsThat) {
   EXPECT_NEAR(front.hypervolume, 5.0 / 6.0 + 0.21, 1e-3);
 }
 
-/// f1 = f2 = u² + v²: one point is best in both.
-class OnePoint final : public planner::Problem {
- public:
-  [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] int objectives() const override { return 2; }
-  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
-  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
-  void evaluate(std::span<const double> x, std::span<planner::Cost> costs) const override {
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      const double f = x[2 * i] * x[2 * i] + x[2 * i + 1] * x[2 * i + 1];
-      costs[i].f = {f, f, 0.0};
-    }
-  }
-
- private:
-  std::array<double, 2> lower_{-1.0, -1.0}, upper_{2.0, 2.0};
-};
-
 TEST(ReferenceFront, OfAProblemWithOneBestPointIsThatPoint) {
-  const ReferenceFront front = search_reference(OnePoint());
+  const auto objectives = [](double u, double v) -> planner::Point2 { return {u * u + v * v, u * u + v * v}; };
+  const ReferenceFront front = search_reference(InThePlane(objectives, {-1.0, -1.0}, {2.0, 2.0}));
   ASSERT_EQ(front.points.size(), 1U);
   EXPECT_NEAR(front.points[0][0], 0.0, 1e-4);
 }

@@ -68,16 +68,8 @@ bool read_lines(const std::filesystem::path& file, const std::function<void(cons
 }
 
 void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path unfinished = tools::unfinished_name(file);
-  {
-    std::ofstream out(unfinished, std::ios::binary);
-    out << text << std::flush;
-    if (!out) throw ResultsError(system_error(file));
-  }
-  if (unfinished == file) return;
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) throw ResultsError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  if (const std::error_code error = tools::write_file(file, text))
+    throw ResultsError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
 LineFile::LineFile(const std::filesystem::path& file, const Json& header) : file_(file) {
