@@ -87,12 +87,13 @@ std::string page(const Results& results, const Summary& summary, const std::file
 }
 
 void write_tables(const Results& results, const Summary& summary, const std::filesystem::path& out) {
-  write_whole(results_path(out), to_text(results));
   write_whole(out / "flights.csv", flights_csv(results, out));
   write_whole(out / "table.csv", table_csv(summary));
   write_whole(out / "table.json", summary_json(results, summary, out).dump(2) + "\n");
   write_whole(out / "table.md", table_markdown(results, summary, out));
   write_whole(out / "arena.html", page(results, summary, out));
+  // Last, so that a merge that was interrupted can be repeated.
+  write_whole(results_path(out), to_text(results));
 }
 
 }  // namespace jink::arena
