@@ -249,6 +249,7 @@ void HorizonPlanner::keep_previous(const PathRequest& request, const TimedPath& 
   if (old_cost.violation == 0.0 && old.verification.free()) {
     const double slack = settings_.keep_ratio;
     keep = new_cost.violation > 0.0 || !plan.verification.free() ||
+           new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
            (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
   } else if (new_cost.violation > 0.0 || !plan.verification.free()) {
     keep = less_harm(old.verification, plan.verification);

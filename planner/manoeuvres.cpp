@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "planner/obstacle_motion.hpp"
+#include "planner/openings.hpp"
 #include "planner/path_scene.hpp"
 
 namespace jink::planner {
@@ -19,6 +20,9 @@ constexpr double kStopBraking = 2.0;    // m/s², of a gentle stop
 constexpr double kStopStep = 0.1;       // s
 constexpr double kReturn = 1.0;         // s, in which it fades before and after
 constexpr double kDifference = 0.05;    // s, over which twice a known path's velocity is taken
+constexpr int kPasses = 3;              // times at which an opening is looked for, one for each waypoint
+constexpr std::size_t kOpenings = 3;    // at each
+constexpr double kOpeningReach = 1.0;   // s, about the passage, in which an opening's motion is followed
 
 /// Where undisturbed flight comes too close to an obstacle.
 struct Encounter {
@@ -108,6 +112,37 @@ TimedPath displaced(const TimedPath& undisturbed, std::span<const double> times,
   return path;
 }
 
+/// Through an opening at time `t`: waiting until then before it, beside undisturbed flight from the start on.
+TimedPath through(const TimedPath& undisturbed, std::span<const double> times, double t, const Opening& opening,
+                  const PathFrame& frame, double cruise) {
+  TimedPath path;
+  for (const double time : times) {
+    const double after = time - t;
+    const double there = (opening.position - frame.origin).dot(frame.axis) + after * cruise;
+    const double undelayed = (sample(undisturbed, time).position - frame.origin).dot(frame.axis);
+    const double along = after > 0.0 ? there : std::clamp(there, 0.0, undelayed);
+    const Vec3 place = opening.position + std::clamp(after, -kOpeningReach, kOpeningReach) * opening.velocity;
+    const Vec3 aside = place - (place - frame.origin).dot(frame.axis) * frame.axis;
+    path.push_back({time, aside + along * frame.axis, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
+/// The ways through what is met first, at the next waypoints' times.
+void add_ways_through(std::vector<TimedPath>& paths, const PathRequest& request, const TimedPath& undisturbed,
+                      std::span<const double> times, const Encounter& e, double clearance) {
+  const PathFrame frame(request.position, request.target);
+  const Vec3 centre = sample(undisturbed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
+  int passes = 0;
+  for (const double time : times) {
+    if (time < e.t || passes == kPasses) continue;
+    ++passes;
+    for (const Opening& opening : openings(request, frame, centre, time, clearance, kOpenings)) {
+      paths.push_back(through(undisturbed, times, time, opening, frame, request.vehicle.cruise_speed));
+    }
+  }
+}
+
 /// Undisturbed flight as far as it would have come at warped times.
 template <typename Warp>
 TimedPath warped(const TimedPath& undisturbed, std::span<const double> times, const Warp& warp) {
@@ -142,7 +177,9 @@ std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& u
   std::vector<TimedPath> paths;
   const PathFrame frame(request.position, request.target);
   const double until = times.back();
-  for (const Encounter& e : encounters(request, undisturbed, until, clearance)) {
+  const std::vector<Encounter> met = encounters(request, undisturbed, until, clearance);
+  if (!met.empty()) add_ways_through(paths, request, undisturbed, times, met.front(), clearance);
+  for (const Encounter& e : met) {
     for (const Vec3& displacement : ways_past(e, frame.axis)) {
       paths.push_back(displaced(undisturbed, times, e.t, displacement, frame.axis));
     }

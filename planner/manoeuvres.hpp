@@ -12,6 +12,8 @@
 namespace jink::planner {
 
 /// Paths from the request's state, one point at each time of `times` (rising, s):
+/// - through the clearest places across the path where the first obstacle is met (openings()), at three times, waiting
+///   before it until then;
 /// - undisturbed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
 /// - lanes beside, above and below it, left again towards the end;
 /// - for each of the first obstacles that undisturbed flight meets, the displacements that lead just past it in
