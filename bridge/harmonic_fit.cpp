@@ -61,10 +61,11 @@ Solution solve(std::span<const MotionSample> samples, const Weights& weights, do
       speed[2 * k] = k * frequency * c;
     }
     const Vec3 position = sample.position - last.position;
-    normal += place * (weights.position * place).transpose();
-    normal += speed * (weights.velocity * speed).transpose();
-    right += weights.position * place * position.transpose() + weights.velocity * speed * sample.velocity.transpose();
-    total += weights.position * position.squaredNorm() + weights.velocity * sample.velocity.squaredNorm();
+    const double at = sample.measurements * weights.position;
+    const double by = sample.measurements * weights.velocity;
+    normal += place * (at * place).transpose() + speed * (by * speed).transpose();
+    right += at * place * position.transpose() + by * speed * sample.velocity.transpose();
+    total += at * position.squaredNorm() + by * sample.velocity.squaredNorm();
   }
   const Eigen::LDLT<Normal> factors(normal);
   Solution solution;

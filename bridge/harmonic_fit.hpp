@@ -10,11 +10,12 @@
 
 namespace jink::bridge {
 
-/// A track as it was measured at time `t`.
+/// A track as it was measured at time `t`, or the mean of so many `measurements` about it.
 struct MotionSample {
   double t = 0.0;
   planner::Vec3 position = planner::Vec3::Zero();
   planner::Vec3 velocity = planner::Vec3::Zero();
+  double measurements = 1.0;
 };
 
 struct HarmonicFit {

@@ -13,14 +13,17 @@ namespace {
 using planner::Vec3;
 
 constexpr double kSpacing = 0.05;        // s, between samples at first
+constexpr double kCoarsest = 0.2;        // s, that means of noisy samples are taken over
 constexpr double kFitPeriod = 0.15;      // s
 constexpr double kPatience = 4.0;        // fit periods, between fits where there is little to learn
 constexpr double kShortest = 0.3;        // s, of history for a first fit
 constexpr double kPlainMisfit = 0.1;     // m in kLead seconds, with which plain prediction does
-constexpr double kProven = 0.25;         // m in kLead seconds, with which a fit has proved right
+constexpr double kProven = 0.5;          // m, that a fit may be off by in kLead seconds, whatever plain prediction is
+constexpr double kLongestLead = 2.5;     // s, until which a fit is tried where plain prediction does as well
+constexpr double kUnderstood = 0.25;     // m in kLead seconds, with which a fit that has proved right leaves no puzzle
 constexpr double kBetter = 0.6;          // times plain prediction's misfit, that its own may be
 constexpr double kCurving = 1.0;         // m/s², measured, with which plain prediction will not do for long
-constexpr double kMuchBetter = 0.1;      // the same, that proves it before kLead seconds are over
+constexpr double kMuchBetter = 0.5;      // the same, noise included, that proves it before kLead seconds are over
 constexpr double kSigmas = 3.0;          // of the estimate that a misfit may be by noise
 constexpr double kExact = 1e-4;          // m, m/s: sigmas below are taken for this
 constexpr double kBeyond = 0.1;          // m, that noise may put a track behind a bound
@@ -30,10 +33,19 @@ constexpr double kDoubt = 0.1;           // m/s, that a forecast is worse by tha
 constexpr planner::HorizonSettings kDefaults;
 constexpr double kTrust = kDefaults.acceleration_trust;  // s, of plain prediction's acceleration
 constexpr double kAhead = kDefaults.time;                // s, in which a turn is of interest
+constexpr int kCertain = 2;                              // turns at one place, after which it is relied on
 constexpr double kTurnPause = 0.3;                       // s, between two turns of a track
 
 double along(double x, bool upper) {
   return upper ? x : -x;
+}
+
+MotionSample mean(const MotionSample& a, const MotionSample& b) {
+  const double all = a.measurements + b.measurements;
+  const double first = a.measurements / all;
+  const double second = b.measurements / all;
+  return {first * a.t + second * b.t, first * a.position + second * b.position,
+          first * a.velocity + second * b.velocity, all};
 }
 
 }  // namespace
@@ -72,45 +84,67 @@ planner::Box LearnedRoom::bounds(double radius) const {
   return box;
 }
 
-void LearnedTrack::remember(const MotionSample& sample) {
-  if (spacing_ == 0.0) spacing_ = kSpacing;
-  if (!samples_.empty() && sample.t - samples_.back().t < spacing_ - 1e-3) return;
-  if (samples_.size() >= kMost) {
-    // Every other one, the newest kept.
-    std::size_t kept = 0;
-    for (std::size_t i = 1; i < samples_.size(); i += 2) samples_[kept++] = samples_[i];
-    samples_.resize(kept);
-    spacing_ *= 2.0;
-    if (sample.t - samples_.back().t < spacing_ - 1e-3) return;
+// Makes room for as many again. Exact measurements are enough of every other one; of noisy ones each counts.
+void LearnedTrack::thin_out(bool exact) {
+  if (!exact && spacing_ > 0.5 * kCoarsest) {
+    samples_.erase(samples_.begin());
+    return;
   }
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < samples_.size(); i += 2)
+    samples_[kept++] = exact ? samples_[i] : mean(samples_[i - 1], samples_[i]);
+  samples_.resize(kept);
+  spacing_ *= 2.0;
+}
+
+void LearnedTrack::remember(const MotionSample& sample, bool exact) {
+  if (spacing_ == 0.0) spacing_ = kSpacing;
+  if (!samples_.empty() && sample.t - begun_ < spacing_ - 1e-3) {
+    if (!exact) samples_.back() = mean(samples_.back(), sample);
+    return;
+  }
+  if (samples_.size() >= kMost) thin_out(exact);
+  if (exact && !samples_.empty() && sample.t - samples_.back().t < spacing_ - 1e-3) return;
   samples_.push_back(sample);
+  begun_ = sample.t;
 }
 
 void LearnedTrack::observe(double t, const planner::Track& measured, const planner::Track& estimate, std::uint64_t name,
                            LearnedRoom& room) {
   if (first_ < 0.0) first_ = t;
-  remember({t, measured.position, measured.velocity});
+  remember({t, measured.position, measured.velocity}, measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0);
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
   room.saw(estimate.position, estimate.radius);
   // A bound that the track has passed is none.
   for (int axis = 0; axis < 3; ++axis) {
     const double slack = kBeyond + kSigmas * estimate.position_sigma;
-    if (estimate.position[axis] > turns_.max[axis] + slack) turns_.max[axis] = planner::kInfinity;
-    if (estimate.position[axis] < turns_.min[axis] - slack) turns_.min[axis] = -planner::kInfinity;
+    auto& [below, above] = returns_[static_cast<std::size_t>(axis)];
+    if (estimate.position[axis] > turns_.max[axis] + slack) {
+      turns_.max[axis] = planner::kInfinity;
+      above = 0;
+    }
+    if (estimate.position[axis] < turns_.min[axis] - slack) {
+      turns_.min[axis] = -planner::kInfinity;
+      below = 0;
+    }
   }
   look_for_turn(t, measured, name, room);
   judge(t, estimate);
   const bool curves = estimate.position_sigma <= 0.0 && estimate.acceleration.squaredNorm() > kCurving * kCurving;
   const bool fails = std::any_of(trials_.begin(), trials_.end(),
                                  [](const Trial& trial) { return trial.plain_misfit > kPlainMisfit + trial.noise; });
-  puzzling_ = !proven_ && !plain_ && (curves || fails);
+  const bool understood = proven_ && *proven_ < kUnderstood + kSigmas * estimate.position_sigma;
+  puzzling_ = !understood && !plain_ && (curves || fails);
 }
 
 void LearnedTrack::turned(double t, int axis, double where, double speed, std::uint64_t name, double radius,
                           LearnedRoom& room) {
   const bool upper = speed > 0.0;
-  (upper ? turns_.max : turns_.min)[axis] = where;
+  double& bound = (upper ? turns_.max : turns_.min)[axis];
+  int& returns = returns_[static_cast<std::size_t>(axis)][upper ? 1 : 0];
+  returns = std::abs(where - bound) < 2.0 * kBeyond ? returns + 1 : 1;
+  bound = where;
   room.turned(name, axis, upper, upper ? where + radius : where - radius);
   last_turn_ = t;
 }
@@ -163,18 +197,28 @@ void LearnedTrack::judge(double t, const planner::Track& estimate) {
     trial.plain_misfit =
         std::max(trial.plain_misfit, (planner::predict_position(trial.plain, lead, kTrust) - estimate.position).norm());
   }
-  // Where plain prediction has gone wrong already and the fit has not, there is no need to wait.
-  const auto decided = [t](const Trial& trial) {
-    return t - trial.begun >= kLead || (trial.plain_misfit > kPlainMisfit + trial.noise &&
-                                        trial.misfit + trial.noise < kMuchBetter * trial.plain_misfit);
+  const auto lead = [t](const Trial& trial) { return t - trial.begun; };
+  // A fit may be off by as much as it is better than plain prediction.
+  // A fit may be off by as much as it is better than plain prediction.
+  const auto wrong = [](const Trial& trial) {
+    return trial.misfit > std::max(kProven + trial.noise, kBetter * trial.plain_misfit);
+  };
+  const auto plain_wrong = [](const Trial& trial) { return trial.plain_misfit > kPlainMisfit + trial.noise; };
+  const auto decided = [&](const Trial& trial) {
+    // Where plain prediction has gone wrong already and the fit has not, there is no need to wait.
+    if (plain_wrong(trial) && trial.misfit + trial.noise < kMuchBetter * trial.plain_misfit) return true;
+    return lead(trial) >= (wrong(trial) || plain_wrong(trial) ? kLead : kLongestLead);
   };
   while (!trials_.empty() && decided(trials_.front())) {
-    const Trial& trial = trials_.front();
-    plain_ = trial.plain_misfit < kPlainMisfit + trial.noise;
-    if (trial.misfit < kProven + trial.noise && trial.misfit < kBetter * trial.plain_misfit) {
+    Trial& trial = trials_.front();
+    plain_ = !plain_wrong(trial);
+    if (trial.misfit < kBetter * trial.plain_misfit) {
       if (failures_ < 0) proven_ = trial.misfit;
       failures_ = std::min(failures_, 0) - 1;
-      if (trials_.size() == 1) next_fit_ = t;  // a forecast needs a fit that is on trial
+      if (trials_.size() == 1) {  // a forecast needs a fit that is on trial: the same again, until there is a new one
+        trial = {t, trial.motion.later(lead(trial)), estimate};
+        break;
+      }
     } else {
       proven_.reset();
       failures_ = std::max(failures_, 0) + 1;
@@ -182,11 +226,9 @@ void LearnedTrack::judge(double t, const planner::Track& estimate) {
     trials_.erase(trials_.begin());
   }
   // A fit that goes wrong before its time is over ends the belief at once.
-  for (const Trial& trial : trials_) {
-    if (trial.misfit > kProven + trial.noise) {
-      proven_.reset();
-      failures_ = std::max(failures_, 0);
-    }
+  if (std::any_of(trials_.begin(), trials_.end(), wrong)) {
+    proven_.reset();
+    failures_ = std::max(failures_, 0);
   }
 }
 
@@ -199,6 +241,21 @@ void LearnedTrack::fit(double t, const planner::Track& measured, const planner::
   if (!found) return;
   frequency_ = found->motion.frequency;
   trials_.push_back({t, found->motion.later(t - samples_.back().t), estimate});
+}
+
+// Whether its next turn is where it turned again and again.
+bool LearnedTrack::certain(const BouncingMotion& motion) const {
+  const double next = motion.first_turn();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double v = motion.velocity[axis];
+    if (v == 0.0) continue;
+    const bool upper = v > 0.0;
+    const double bound = (upper ? motion.room.max : motion.room.min)[axis];
+    if (!((bound - motion.begin[axis]) / v <= next)) continue;
+    return bound == (upper ? turns_.max : turns_.min)[axis] &&
+           returns_[static_cast<std::size_t>(axis)][upper ? 1 : 0] >= kCertain;
+  }
+  return false;
 }
 
 std::optional<Forecast> LearnedTrack::forecast(double now, double t, const planner::Track& estimate,
@@ -217,6 +274,7 @@ std::optional<Forecast> LearnedTrack::forecast(double now, double t, const plann
   bouncing.room.min = bouncing.room.min.cwiseMax(turns_.min);
   bouncing.room.max = bouncing.room.max.cwiseMin(turns_.max);
   if (!(bouncing.first_turn() < now - t + kAhead)) return std::nullopt;
+  forecast.replaces = certain(bouncing);
   bouncing.begin = bouncing.position(now - t);
   for (int axis = 0; axis < 3; ++axis) {
     const double x = estimate.position[axis] + (now - t) * estimate.velocity[axis];

@@ -34,8 +34,10 @@ class LearnedRoom {
   std::array<std::array<Side, 2>, 3> sides_;  // axis; lower, upper
 };
 
-/// What one track did, and what follows from it. A learned motion is believed for as long as it keeps being right: each
-/// fit is held against what comes in the following kLead seconds.
+/// What one track did, and what follows from it. A learned motion is believed for as long as it keeps being clearly
+/// better than plain prediction: each fit is held against what comes in the following kLead seconds, longer where both
+/// do. A turn is relied on where the track turned twice, and avoided besides plain prediction where it turned once or
+/// others did.
 class LearnedTrack {
  public:
   /// The newest measurement, as measured and as estimated, at its instant `t`. O(samples on trial).
@@ -68,23 +70,27 @@ class LearnedTrack {
     double misfit = 0.0, plain_misfit = 0.0;  // m, the most so far
     double noise = 0.0;                       // m, that is part of them
   };
-  void remember(const MotionSample& sample);
+  void remember(const MotionSample& sample, bool exact);
+  void thin_out(bool exact);
   void judge(double t, const planner::Track& estimate);
   void look_for_turn(double t, const planner::Track& measured, std::uint64_t name, LearnedRoom& room);
+  [[nodiscard]] bool certain(const BouncingMotion& motion) const;
   void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedRoom& room);
 
   std::vector<MotionSample> samples_;  // thinned out as they grow old
   double spacing_ = 0.0;
+  double begun_ = 0.0;                // the newest sample
   std::vector<MotionSample> recent_;  // the last few as measured
   std::vector<Trial> trials_;         // oldest first
   double next_fit_ = 0.0;
   double first_ = -1.0;  // when it was observed first
   bool puzzling_ = false;
-  double frequency_ = 0.0;        // of the last fit; 0: none
-  std::optional<double> proven_;  // m, misfit of the last trial that ended well
-  bool plain_ = false;            // constant acceleration does as well
-  int failures_ = 0;              // trials in a row that did not prove right; below 0: that did
-  planner::Box turns_;            // of its own
+  double frequency_ = 0.0;                       // of the last fit; 0: none
+  std::optional<double> proven_;                 // m, misfit of the last trial that ended well
+  bool plain_ = false;                           // constant acceleration does as well
+  int failures_ = 0;                             // trials in a row that did not prove right; below 0: that did
+  planner::Box turns_;                           // of its own
+  std::array<std::array<int, 2>, 3> returns_{};  // axis; lower, upper: how often it turned there
   double last_turn_ = -1.0;
 };
 

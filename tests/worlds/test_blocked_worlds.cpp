@@ -196,6 +196,13 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ClosedLoop,
                            return name_of(std::get<0>(tested.param)) + "_" + std::to_string(std::get<1>(tested.param));
                          });
 
+// Whoever only tries ways past the nearest obstacles never meets the hole that wanders 4 m aside.
+TEST(ClosedLoop, PassesThroughTwoWallsWithWanderingHoles) {
+  const sim::ClosedLoopResult result = fly(sim::make_world("walls", 103));
+  EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
 class ThreadCount : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(ThreadCount, DoesNotChangeABitOfTheFlight) {
