@@ -244,13 +244,13 @@ struct Noisy {
     filter.update(kStep, measured);
     filter.apply(last);
     learned.observe(t, measured, last, 1, room);
-    if (learned.fit_due() > t || t < fitted + pause) return;
+    if (learned.fit_due() > t || t < fitted_ + pause) return;
     learned.fit(t, measured, last);
-    fitted = t;
+    fitted_ = t;
   }
 
  private:
-  double fitted = -1.0;
+  double fitted_ = -1.0;
 };
 
 // In a crowd the fits come in turn, each track's more than a trial apart. What has proved right stays believed between.

@@ -168,14 +168,14 @@ TEST(HorizonPlanner, DropsAPreviousPlanThatIsClearlyWorse) {
   EXPECT_LT(path_length(plan.path), 20.2);
 }
 
-// Past the wall at less than its uncertainty asks for, but 0.1 m more than the margin; the search, which cannot go so
+// Past the wall at less than its uncertainty asks for, but more than the margin; the search, which cannot go so
 // far aside, waits in front of it with all the clearance that anybody asks for.
 TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   std::vector<Track> tracks = wall();
   std::erase_if(tracks, [](const Track& track) { return track.position.y() > 0.0; });
   PathRequest r = request(tracks);
   r.track_acceleration = HorizonSettings{}.track_acceleration;
-  const double aside = 1.0 + r.vehicle.radius + r.margin + 0.1;
+  const double aside = 1.0 + r.vehicle.radius + r.margin + 0.02;
   TimedPath past;
   for (double x = 0.0; x < 20.0; x += 0.2) {
     const double share = std::clamp(std::min(x, 16.0 - x) / 6.0, 0.0, 1.0);
@@ -184,7 +184,9 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   past.push_back({8.0, r.target, Vec3::Zero(), Vec3::Zero()});
   ASSERT_GE(check(r, past).min_clearance, r.margin);
   HorizonSettings narrow;
-  narrow.lateral_range = 1.0;
+  narrow.lateral_range = 0.5;
+  narrow.weight_clearance = 1.0;
+  narrow.weight_length = 0.1;
   WorkerPool pool(2);
   HorizonPlanner planner(narrow);
   const Plan found = planner.plan(r, {}, 1, 0, {narrow.generations}, pool);
