@@ -47,7 +47,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       table_(mission.tracks.coast_s),
       stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(),
                settings.companion.drag, settings.horizon.braking, mission.vehicle.max_acceleration,
-               flight_volume(mission)}) {
+               flight_volume(mission), mission.vehicle.max_speed}) {
   if (mission.intents && parts_.intents != nullptr) {
     team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
   }

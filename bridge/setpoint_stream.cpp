@@ -17,6 +17,7 @@ constexpr double kHistory = 1.0;            // s, of a path followed before that
 constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
 constexpr double kLearningRate = 0.4;       // 1/s² of drag for each metre of lag
 constexpr double kMostDrag = 2.0;           // 1/s
+constexpr double kSaturated = 0.95;         // of the largest speed
 
 }  // namespace
 
@@ -89,12 +90,13 @@ void SetpointStream::shift(const Vec3& by) {
   for (planner::TimedPoint& point : next_) point.position += by;
 }
 
-void SetpointStream::learn(double t, const Vec3& position, double dt) {
+void SetpointStream::learn(double t, const Vec3& position, const Vec3& velocity, double dt) {
   if (!active() || !is_plan_) return;
   const planner::TimedPoint point = reference(t);
   const double speed = point.velocity.norm();
   if (speed < kLearningSpeed) return;
   const double lag = (point.position - position).dot(point.velocity) / speed;
+  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
   drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
 }
 

@@ -20,6 +20,7 @@ class SetpointStream {
     double braking = 2.0;            ///< m/s², deceleration of a brake
     double hardest = 6.0;            ///< m/s², of a brake that would leave the volume
     planner::Box volume{};           ///< in which a brake is to end
+    double max_speed = planner::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
   };
   explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
 
@@ -40,9 +41,10 @@ class SetpointStream {
   /// The setpoint to send at `now`, heading `yaw`.
   [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
 
-  /// Learns the drag from how far the vehicle, measured at `position` at time t, lags behind the reference or runs
-  /// ahead of it; `dt` since the last call.
-  void learn(double t, const Vec3& position, double dt);
+  /// Learns the drag from how far the vehicle, measured at `position` with `velocity` at time t, lags behind the
+  /// reference or runs ahead of it; `dt` since the last call. Not from a lag at nearly the largest speed: no thrust
+  /// makes that good.
+  void learn(double t, const Vec3& position, const Vec3& velocity, double dt);
   /// The drag that setpoints make up for now, 1/s.
   [[nodiscard]] double drag() const { return drag_; }
 

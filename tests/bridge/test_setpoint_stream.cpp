@@ -217,7 +217,7 @@ TEST(SetpointStream, LearnsTheDragThatTheVehicleHas) {
     Vehicle vehicle{.v = 3.0};
     for (double t = 0.0; t < 60.0; t += 0.02) {
       vehicle.step(stream.setpoint(t, 0.0), truth, 0.02);
-      stream.learn(t + 0.02, {vehicle.x, 0, 1}, 0.02);
+      stream.learn(t + 0.02, {vehicle.x, 0, 1}, {vehicle.v, 0, 0}, 0.02);
       ASSERT_GE(stream.drag(), 0.0);
       ASSERT_LE(stream.drag(), 2.0);
     }
@@ -231,27 +231,41 @@ TEST(SetpointStream, WhatIsLearnedIsBounded) {
   for (const double lag : {10.0, -10.0}) {
     SetpointStream stream(plain());
     stream.follow(line(0.0, {0, 0, 1}, {3, 0, 0}, 60.0));
-    for (double t = 0.0; t < 50.0; t += 0.02) stream.learn(t, {3 * t - lag, 0, 1}, 0.02);
+    for (double t = 0.0; t < 50.0; t += 0.02) stream.learn(t, {3 * t - lag, 0, 1}, {3, 0, 0}, 0.02);
     EXPECT_EQ(stream.drag(), lag > 0 ? 2.0 : 0.0);
   }
+}
+
+// What fell behind at the start and then flies as fast as it may stays behind: that is no drag, and thrust that makes
+// up for drag that is not there drives the vehicle beyond its target.
+TEST(SetpointStream, LearnsNoDragFromALagAtTheLargestSpeed) {
+  SetpointStream::Settings settings = plain();
+  settings.drag = 1.0;
+  settings.max_speed = 3.0;
+  SetpointStream stream(settings);
+  stream.follow(line(0.0, {0, 0, 1}, {3, 0, 0}, 60.0));
+  for (double t = 0.0; t < 20.0; t += 0.02) stream.learn(t, {3 * t - 0.6, 0, 1}, {2.98, 0, 0}, 0.02);
+  EXPECT_EQ(stream.drag(), 1.0);
+  for (double t = 20.0; t < 21.0; t += 0.02) stream.learn(t, {3 * t + 0.2, 0, 1}, {2.98, 0, 0}, 0.02);
+  EXPECT_LT(stream.drag(), 1.0);  // ahead of it, there is too much
 }
 
 TEST(SetpointStream, LearnsNothingWhenSlowHoldingOrBraking) {
   SetpointStream::Settings settings = plain();
   settings.drag = 0.7;
   SetpointStream stream(settings);
-  stream.learn(0.0, {1, 0, 0}, 1.0);
+  stream.learn(0.0, {1, 0, 0}, {2, 0, 0}, 1.0);
   stream.follow(line(0.0, {0, 0, 1}, {0.9, 0, 0}));
-  stream.learn(1.0, {0, 0, 1}, 1.0);
+  stream.learn(1.0, {0, 0, 1}, {2, 0, 0}, 1.0);
   EXPECT_EQ(stream.drag(), 0.7);
   stream.follow(line(0.0, {0, 0, 1}, {3, 0, 0}));
   stream.brake(1.0);
-  stream.learn(1.1, {0, 0, 1}, 1.0);
+  stream.learn(1.1, {0, 0, 1}, {2, 0, 0}, 1.0);
   stream.hold({5, 0, 1}, 2.0);
-  stream.learn(3.0, {0, 0, 1}, 1.0);
+  stream.learn(3.0, {0, 0, 1}, {2, 0, 0}, 1.0);
   EXPECT_EQ(stream.drag(), 0.7);
   stream.follow(line(3.0, {5, 0, 1}, {3, 0, 0}));
-  stream.learn(4.0, {7.5, 0, 1}, 0.1);
+  stream.learn(4.0, {7.5, 0, 1}, {2, 0, 0}, 0.1);
   EXPECT_GT(stream.drag(), 0.7);
 }
 
