@@ -156,9 +156,11 @@ void Companion::take_plan(double now) {
   if (usable) newest_plan_ = result->job.begun;
   if (!usable || !wanted) return;
   planner::TimedPath path = std::move(result->plan.path);
-  const Vec3 shift = estimate_shift_ - result->job.estimate_shift;  // of the time that the plan took
+  // Of the time that the plan took.
+  const Vec3 shift = estimate_shift_ - result->job.estimate_shift;
+  const double waited = stream_.waited() - result->job.waited;
   for (planner::TimedPoint& point : path) {
-    point.t += result->job.start;
+    point.t += result->job.start + waited;
     point.position += shift;
   }
   stream_.follow(std::move(path));
@@ -208,6 +210,7 @@ void Companion::start_plan(double now) {
   job.start = now + std::max(parts_.planner.latency(), companion.commitment);
   job.newest_track = table_.newest_message();
   job.estimate_shift = estimate_shift_;
+  job.waited = stream_.waited();
   job.tracks = table_.predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (team_) job.paths = team_->paths(now, job.start);
 

@@ -28,6 +28,7 @@ struct PlanJob {
   double begun = 0.0;
   double start = 0.0;
   double newest_track = -1.0;  ///< reception of the newest track message that went in; negative: none
+  double waited = 0.0;         ///< s, SetpointStream::waited() that the request was made with
   planner::Vec3 estimate_shift = planner::Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };
 

@@ -15,9 +15,11 @@ constexpr double kAtRest = 0.02;            // m/s
 constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
 constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
-constexpr double kLearningRate = 0.4;       // 1/s² of drag for each metre of lag
-constexpr double kMostDrag = 2.0;           // 1/s
-constexpr double kSaturated = 0.95;         // of the largest speed
+constexpr double kSteady = 1.0;        // m/s², of the reference, above which a lag says more about attitude and rotors
+constexpr double kLearningRate = 0.4;  // 1/s² of drag for each metre of lag
+constexpr double kMostDrag = 2.0;      // 1/s
+constexpr double kSaturated = 0.95;    // of the largest speed
+constexpr double kWaiting = 0.5;       // of what the vehicle is late, that the reference waits for it in a second
 
 }  // namespace
 
@@ -90,13 +92,23 @@ void SetpointStream::shift(const Vec3& by) {
   for (planner::TimedPoint& point : next_) point.position += by;
 }
 
+void SetpointStream::wait(double dt) {
+  for (planner::TimedPoint& point : current_) point.t += dt;
+  for (planner::TimedPoint& point : next_) point.t += dt;
+  waited_ += dt;
+}
+
 void SetpointStream::learn(double t, const Vec3& position, const Vec3& velocity, double dt) {
   if (!active() || !is_plan_) return;
   const planner::TimedPoint point = reference(t);
   const double speed = point.velocity.norm();
   if (speed < kLearningSpeed) return;
   const double lag = (point.position - position).dot(point.velocity) / speed;
-  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
+  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) {
+    wait(kWaiting * lag / speed * dt);
+    return;
+  }
+  if (point.acceleration.norm() > kSteady) return;
   drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
 }
 

@@ -42,9 +42,12 @@ class SetpointStream {
   [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
 
   /// Learns the drag from how far the vehicle, measured at `position` with `velocity` at time t, lags behind the
-  /// reference or runs ahead of it; `dt` since the last call. Not from a lag at nearly the largest speed: no thrust
-  /// makes that good.
+  /// reference or runs ahead of it; `dt` since the last call. Where it lags at nearly its largest speed no thrust makes
+  /// that good: then the reference waits for it instead, little by little.
   void learn(double t, const Vec3& position, const Vec3& velocity, double dt);
+  /// For how long the reference has waited in all, s. A path that was made to follow on an earlier reference starts
+  /// later by what it has waited since.
+  [[nodiscard]] double waited() const { return waited_; }
   /// The drag that setpoints make up for now, 1/s.
   [[nodiscard]] double drag() const { return drag_; }
 
@@ -58,9 +61,11 @@ class SetpointStream {
 
  private:
   [[nodiscard]] double deceleration(const Vec3& position, const Vec3& velocity) const;
+  void wait(double dt);
 
   Settings settings_;
   double drag_;
+  double waited_ = 0.0;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::TimedPath current_;

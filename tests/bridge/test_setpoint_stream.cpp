@@ -237,17 +237,36 @@ TEST(SetpointStream, WhatIsLearnedIsBounded) {
 }
 
 // What fell behind at the start and then flies as fast as it may stays behind: that is no drag, and thrust that makes
-// up for drag that is not there drives the vehicle beyond its target.
-TEST(SetpointStream, LearnsNoDragFromALagAtTheLargestSpeed) {
+// up for drag that is not there drives the vehicle beyond its target. So the reference waits.
+TEST(SetpointStream, WaitsForAVehicleThatLagsAtItsLargestSpeed) {
   SetpointStream::Settings settings = plain();
   settings.drag = 1.0;
   settings.max_speed = 3.0;
   SetpointStream stream(settings);
   stream.follow(line(0.0, {0, 0, 1}, {3, 0, 0}, 60.0));
-  for (double t = 0.0; t < 20.0; t += 0.02) stream.learn(t, {3 * t - 0.6, 0, 1}, {2.98, 0, 0}, 0.02);
+  stream.follow(line(0.5, {1.5, 0, 1}, {3, 0, 0}, 60.0));
+  double t = 0.0;
+  for (; t < 10.0; t += 0.02) stream.learn(t, {3 * t - 0.6, 0, 1}, {2.98, 0, 0}, 0.02);
   EXPECT_EQ(stream.drag(), 1.0);
-  for (double t = 20.0; t < 21.0; t += 0.02) stream.learn(t, {3 * t + 0.2, 0, 1}, {2.98, 0, 0}, 0.02);
+  EXPECT_NEAR(stream.waited(), 0.2, 0.01);
+  EXPECT_NEAR(stream.reference(t).position.x(), 3 * t - 0.6, 0.02);
+  EXPECT_EQ(stream.reference(t).velocity.x(), 3.0);
+  const double before = stream.waited();
+  for (; t < 11.0; t += 0.02) stream.learn(t, {3 * t, 0, 1}, {2.98, 0, 0}, 0.02);
   EXPECT_LT(stream.drag(), 1.0);  // ahead of it, there is too much
+  EXPECT_EQ(stream.waited(), before);
+}
+
+// A vehicle that has to tilt first lags whenever the speed is to change.
+TEST(SetpointStream, LearnsNoDragWhileTheSpeedChanges) {
+  SetpointStream::Settings settings = plain();
+  settings.drag = 1.0;
+  SetpointStream stream(settings);
+  planner::TimedPath path;
+  for (double t = 0.0; t <= 2.0; t += 0.1) path.push_back({t, {2 * t + t * t, 0, 1}, {2 + 2 * t, 0, 0}, {2, 0, 0}});
+  stream.follow(path);
+  for (double t = 0.0; t < 1.9; t += 0.02) stream.learn(t, {2 * t + t * t - 0.3, 0, 1}, {2 + 2 * t, 0, 0}, 0.02);
+  EXPECT_EQ(stream.drag(), 1.0);
 }
 
 TEST(SetpointStream, LearnsNothingWhenSlowHoldingOrBraking) {
