@@ -55,13 +55,14 @@ Vec3 BouncingMotion::position(double t) const {
   return result;
 }
 
-double BouncingMotion::first_turn() const {
-  double first = planner::kInfinity;
+BouncingMotion::Turn BouncingMotion::first_turn() const {
+  Turn first;
   for (int axis = 0; axis < 3; ++axis) {
     const double v = velocity[axis];
     if (v == 0.0) continue;
     const double bound = v > 0.0 ? room.max[axis] : room.min[axis];
-    if (std::isfinite(bound)) first = std::min(first, std::max(0.0, (bound - begin[axis]) / v));
+    const double t = std::max(0.0, (bound - begin[axis]) / v);
+    if (t < first.t) first = {t, axis, v > 0.0};
   }
   return first;
 }

@@ -33,8 +33,13 @@ struct BouncingMotion {
   planner::Box room;  ///< unbounded where no turn is known
 
   [[nodiscard]] planner::Vec3 position(double t) const;
-  /// When it first turns; infinite if never.
-  [[nodiscard]] double first_turn() const;
+  struct Turn {
+    double t = planner::kInfinity;  ///< never, to begin with
+    int axis = 0;
+    bool upper = false;  ///< at the room's upper bound
+  };
+  /// The first of any axis.
+  [[nodiscard]] Turn first_turn() const;
 };
 
 /// A learned way of one track.

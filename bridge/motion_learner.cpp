@@ -40,6 +40,10 @@ double along(double x, bool upper) {
   return upper ? x : -x;
 }
 
+bool exact(const planner::Track& measured) {
+  return measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0;
+}
+
 MotionSample mean(const MotionSample& a, const MotionSample& b) {
   const double all = a.measurements + b.measurements;
   const double first = a.measurements / all;
@@ -84,6 +88,10 @@ planner::Box LearnedRoom::bounds(double radius) const {
   return box;
 }
 
+bool LearnedTrack::Trial::plain_wrong() const {
+  return plain_misfit > kPlainMisfit + noise;
+}
+
 // Makes room for as many again. Exact measurements are enough of every other one; of noisy ones each counts.
 void LearnedTrack::thin_out(bool exact) {
   if (!exact && spacing_ > 0.5 * kCoarsest) {
@@ -99,12 +107,13 @@ void LearnedTrack::thin_out(bool exact) {
 
 void LearnedTrack::remember(const MotionSample& sample, bool exact) {
   if (spacing_ == 0.0) spacing_ = kSpacing;
-  if (!samples_.empty() && sample.t - begun_ < spacing_ - 1e-3) {
+  const auto early = [&] { return !samples_.empty() && sample.t - begun_ < spacing_ - 1e-3; };
+  if (early()) {
     if (!exact) samples_.back() = mean(samples_.back(), sample);
     return;
   }
   if (samples_.size() >= kMost) thin_out(exact);
-  if (exact && !samples_.empty() && sample.t - samples_.back().t < spacing_ - 1e-3) return;
+  if (exact && early()) return;
   samples_.push_back(sample);
   begun_ = sample.t;
 }
@@ -112,7 +121,7 @@ void LearnedTrack::remember(const MotionSample& sample, bool exact) {
 void LearnedTrack::observe(double t, const planner::Track& measured, const planner::Track& estimate, std::uint64_t name,
                            LearnedRoom& room) {
   if (first_ < 0.0) first_ = t;
-  remember({t, measured.position, measured.velocity}, measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0);
+  remember({t, measured.position, measured.velocity}, exact(measured));
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
   room.saw(estimate.position, estimate.radius);
@@ -132,8 +141,8 @@ void LearnedTrack::observe(double t, const planner::Track& measured, const plann
   look_for_turn(t, measured, name, room);
   judge(t, estimate);
   const bool curves = estimate.position_sigma <= 0.0 && estimate.acceleration.squaredNorm() > kCurving * kCurving;
-  const bool fails = std::any_of(trials_.begin(), trials_.end(),
-                                 [](const Trial& trial) { return trial.plain_misfit > kPlainMisfit + trial.noise; });
+  const bool fails =
+      std::any_of(trials_.begin(), trials_.end(), [](const Trial& trial) { return trial.plain_wrong(); });
   const bool understood = proven_ && *proven_ < kUnderstood + kSigmas * estimate.position_sigma;
   puzzling_ = !understood && !plain_ && (curves || fails);
 }
@@ -151,10 +160,9 @@ void LearnedTrack::turned(double t, int axis, double where, double speed, std::u
 
 // Two straight pieces at the same speed, one axis turned round.
 void LearnedTrack::look_for_turn(double t, const planner::Track& measured, std::uint64_t name, LearnedRoom& room) {
-  const bool exact = measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0;
-  const std::size_t window = exact ? 1 : kNoisyWindow;
+  const std::size_t window = exact(measured) ? 1 : kNoisyWindow;
   if (recent_.size() < 2 * window) return;
-  if (!exact && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
+  if (!exact(measured) && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
   struct Piece {
     double t = 0.0;
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
@@ -190,28 +198,25 @@ void LearnedTrack::look_for_turn(double t, const planner::Track& measured, std::
 // Holds the fits on trial against the newest estimate.
 void LearnedTrack::judge(double t, const planner::Track& estimate) {
   const double noise = kSigmas * estimate.position_sigma;
-  for (Trial& trial : trials_) {
-    const double lead = t - trial.begun;
-    trial.noise = std::max(trial.noise, noise);
-    trial.misfit = std::max(trial.misfit, (trial.motion.position(lead) - estimate.position).norm());
-    trial.plain_misfit =
-        std::max(trial.plain_misfit, (planner::predict_position(trial.plain, lead, kTrust) - estimate.position).norm());
-  }
   const auto lead = [t](const Trial& trial) { return t - trial.begun; };
-  // A fit may be off by as much as it is better than plain prediction.
+  for (Trial& trial : trials_) {
+    trial.noise = std::max(trial.noise, noise);
+    trial.misfit = std::max(trial.misfit, (trial.motion.position(lead(trial)) - estimate.position).norm());
+    trial.plain_misfit = std::max(
+        trial.plain_misfit, (planner::predict_position(trial.plain, lead(trial), kTrust) - estimate.position).norm());
+  }
   // A fit may be off by as much as it is better than plain prediction.
   const auto wrong = [](const Trial& trial) {
     return trial.misfit > std::max(kProven + trial.noise, kBetter * trial.plain_misfit);
   };
-  const auto plain_wrong = [](const Trial& trial) { return trial.plain_misfit > kPlainMisfit + trial.noise; };
   const auto decided = [&](const Trial& trial) {
     // Where plain prediction has gone wrong already and the fit has not, there is no need to wait.
-    if (plain_wrong(trial) && trial.misfit + trial.noise < kMuchBetter * trial.plain_misfit) return true;
-    return lead(trial) >= (wrong(trial) || plain_wrong(trial) ? kLead : kLongestLead);
+    if (trial.plain_wrong() && trial.misfit + trial.noise < kMuchBetter * trial.plain_misfit) return true;
+    return lead(trial) >= (wrong(trial) || trial.plain_wrong() ? kLead : kLongestLead);
   };
   while (!trials_.empty() && decided(trials_.front())) {
     Trial& trial = trials_.front();
-    plain_ = !plain_wrong(trial);
+    plain_ = !trial.plain_wrong();
     if (trial.misfit < kBetter * trial.plain_misfit) {
       if (failures_ < 0) proven_ = trial.misfit;
       failures_ = std::min(failures_, 0) - 1;
@@ -243,19 +248,11 @@ void LearnedTrack::fit(double t, const planner::Track& measured, const planner::
   trials_.push_back({t, found->motion.later(t - samples_.back().t), estimate});
 }
 
-// Whether its next turn is where it turned again and again.
-bool LearnedTrack::certain(const BouncingMotion& motion) const {
-  const double next = motion.first_turn();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double v = motion.velocity[axis];
-    if (v == 0.0) continue;
-    const bool upper = v > 0.0;
-    const double bound = (upper ? motion.room.max : motion.room.min)[axis];
-    if (!((bound - motion.begin[axis]) / v <= next)) continue;
-    return bound == (upper ? turns_.max : turns_.min)[axis] &&
-           returns_[static_cast<std::size_t>(axis)][upper ? 1 : 0] >= kCertain;
-  }
-  return false;
+// Whether a turn of `motion` is where the track itself turned again and again.
+bool LearnedTrack::certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const {
+  const auto bound = [&](const planner::Box& box) { return (turn.upper ? box.max : box.min)[turn.axis]; };
+  return bound(motion.room) == bound(turns_) &&
+         returns_[static_cast<std::size_t>(turn.axis)][turn.upper ? 1 : 0] >= kCertain;
 }
 
 std::optional<Forecast> LearnedTrack::forecast(double now, double t, const planner::Track& estimate,
@@ -273,8 +270,9 @@ std::optional<Forecast> LearnedTrack::forecast(double now, double t, const plann
   BouncingMotion bouncing{estimate.position, estimate.velocity, room.bounds(estimate.radius)};
   bouncing.room.min = bouncing.room.min.cwiseMax(turns_.min);
   bouncing.room.max = bouncing.room.max.cwiseMin(turns_.max);
-  if (!(bouncing.first_turn() < now - t + kAhead)) return std::nullopt;
-  forecast.replaces = certain(bouncing);
+  const BouncingMotion::Turn next = bouncing.first_turn();
+  if (!(next.t < now - t + kAhead)) return std::nullopt;
+  forecast.replaces = certain(bouncing, next);
   bouncing.begin = bouncing.position(now - t);
   for (int axis = 0; axis < 3; ++axis) {
     const double x = estimate.position[axis] + (now - t) * estimate.velocity[axis];

@@ -69,12 +69,13 @@ class LearnedTrack {
     planner::Track plain;
     double misfit = 0.0, plain_misfit = 0.0;  // m, the most so far
     double noise = 0.0;                       // m, that is part of them
+    [[nodiscard]] bool plain_wrong() const;
   };
   void remember(const MotionSample& sample, bool exact);
   void thin_out(bool exact);
   void judge(double t, const planner::Track& estimate);
   void look_for_turn(double t, const planner::Track& measured, std::uint64_t name, LearnedRoom& room);
-  [[nodiscard]] bool certain(const BouncingMotion& motion) const;
+  [[nodiscard]] bool certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const;
   void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedRoom& room);
 
   std::vector<MotionSample> samples_;  // thinned out as they grow old

@@ -129,9 +129,9 @@ TimedPath through(const TimedPath& undisturbed, std::span<const double> times, d
 }
 
 /// The ways through what is met first, at the next waypoints' times.
-void add_ways_through(std::vector<TimedPath>& paths, const PathRequest& request, const TimedPath& undisturbed,
-                      std::span<const double> times, const Encounter& e, double clearance) {
-  const PathFrame frame(request.position, request.target);
+void add_ways_through(std::vector<TimedPath>& paths, const PathRequest& request, const PathFrame& frame,
+                      const TimedPath& undisturbed, std::span<const double> times, const Encounter& e,
+                      double clearance) {
   const Vec3 centre = sample(undisturbed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
   int passes = 0;
   for (const double time : times) {
@@ -178,7 +178,7 @@ std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& u
   const PathFrame frame(request.position, request.target);
   const double until = times.back();
   const std::vector<Encounter> met = encounters(request, undisturbed, until, clearance);
-  if (!met.empty()) add_ways_through(paths, request, undisturbed, times, met.front(), clearance);
+  if (!met.empty()) add_ways_through(paths, request, frame, undisturbed, times, met.front(), clearance);
   for (const Encounter& e : met) {
     for (const Vec3& displacement : ways_past(e, frame.axis)) {
       paths.push_back(displaced(undisturbed, times, e.t, displacement, frame.axis));

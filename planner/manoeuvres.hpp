@@ -17,9 +17,8 @@ namespace jink::planner {
 /// - undisturbed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
 /// - lanes beside, above and below it, left again towards the end;
 /// - for each of the first obstacles that undisturbed flight meets, the displacements that lead just past it in
-/// relative
-///   motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far side, and
-///   between them, taken around the time of the encounter; and a stop short of it.
+///   relative motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far
+///   side, and between them, taken around the time of the encounter; and a stop short of it.
 /// `undisturbed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
 /// is to be kept from an obstacle's surface. O(obstacles · points).
 std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,

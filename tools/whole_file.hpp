@@ -26,6 +26,7 @@ inline std::filesystem::path unfinished_name(const std::filesystem::path& file, 
 inline std::error_code write_file(const std::filesystem::path& file, std::string_view bytes) {
   const std::filesystem::path unfinished = unfinished_name(file);
   std::error_code error;
+  errno = 0;
   {
     std::ofstream out(unfinished, std::ios::binary);
     out << bytes << std::flush;

@@ -75,7 +75,7 @@ TEST(BouncingMotion, FoldsBackAtEveryBound) {
   motion.velocity = {2, -1, 0.5};
   motion.room.min = {0, -planner::kInfinity, -5};
   motion.room.max = {3, planner::kInfinity, 1};
-  EXPECT_EQ(motion.first_turn(), 1.0);
+  EXPECT_EQ(motion.first_turn().t, 1.0);
   EXPECT_NEAR((motion.position(0.5) - Vec3(2, -0.5, 0.25)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((motion.position(2.0) - Vec3(1, -2, 1)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((motion.position(3.0) - Vec3(1, -3, 0.5)).norm(), 0.0, 1e-12);  // -1 folded to 1, 1.5 to 0.5
