@@ -267,7 +267,7 @@ TEST(LearnedTrack, IsBelievedBetweenFitsThatAreRare) {
   EXPECT_GT(believed, 9 * asked / 10);
 }
 
-// Every measurement counts: from 64 single ones of three periods nothing better than 0.1 m could be said.
+// Every measurement counts: of 64 single ones, the rest left out, the forecast would be off by 0.051 m.
 TEST(LearnedTrack, ForecastsMoreExactlyThanItIsMeasured) {
   Noisy noisy;
   double squares = 0.0;
@@ -281,7 +281,7 @@ TEST(LearnedTrack, ForecastsMoreExactlyThanItIsMeasured) {
     squares += (to_path(*forecast, 1.0, 0.1).position(1.0) - swing(t + 1.0)).squaredNorm();
   }
   ASSERT_GT(asked, 100);
-  EXPECT_LT(std::sqrt(squares / asked), 0.1);
+  EXPECT_LT(std::sqrt(squares / asked), 0.045);
 }
 
 TEST(LearnedRoom, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
