@@ -18,6 +18,8 @@ constexpr double kPassing = 0.7;           // m, to a waypoint on the way
 constexpr double kTakeoffTolerance = 0.3;  // m
 constexpr double kInset = 0.05;            // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;       // of the margin, likewise
+constexpr double kPatience = 4.0;          // s, without coming nearer to the waypoint
+constexpr double kGain = 0.5;              // m, that count as nearer
 constexpr double kCautious = 0.3;          // of the cruise speed, while what moves nearby is puzzling
 constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
@@ -46,8 +48,8 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       supervisor_(mission, supervisor_settings(settings.companion)),
       table_(mission.tracks.coast_s),
       stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(),
-               settings.companion.drag, settings.horizon.braking, mission.vehicle.max_acceleration,
-               flight_volume(mission), mission.vehicle.max_speed}) {
+               settings.companion.drag, settings.companion.acceleration_damping, settings.horizon.braking,
+               mission.vehicle.max_acceleration, flight_volume(mission), mission.vehicle.max_speed}) {
   if (mission.intents && parts_.intents != nullptr) {
     team_.emplace(*parts_.intents, mission.vehicle.radius, mission.tracks.coast_s);
   }
@@ -232,6 +234,7 @@ void Companion::start_plan(double now) {
   if (cautious != announced_cautious_)
     event(now, "caution", cautious ? "a new track nearby moves in a way not understood yet: slower" : "over");
   announced_cautious_ = cautious;
+  request.stuck = stuck(now);
   request.volume = volume(request.position, request.target);
   request.margin = margin();
   summary_.largest_margin = std::max(summary_.largest_margin, request.margin);
@@ -248,6 +251,20 @@ void Companion::start_plan(double now) {
   } catch (const std::exception& failure) {
     planner_failed(now, failure);
   }
+}
+
+// Whether the vehicle has long come no nearer to where it goes.
+bool Companion::stuck(double now) {
+  const double left = (mission_.waypoints[waypoint_] - state_.position).norm();
+  if (left < nearest_ - kGain) {
+    nearest_ = left;
+    gained_at_ = now;
+  }
+  const bool stuck = now - gained_at_ > kPatience;
+  if (stuck != announced_stuck_)
+    event(now, "stuck", stuck ? "no nearer to the target for 4 s: looking for a way round" : "over");
+  announced_stuck_ = stuck;
+  return stuck;
 }
 
 // Whoever watched in this flight is to go on watching, or somebody else in its place.
@@ -283,6 +300,7 @@ void Companion::next_waypoint(double now) {
   event(now, "waypoint",
         std::to_string(waypoint_ + 1) + " of " + std::to_string(mission_.waypoints.size()) + " passed");
   ++waypoint_;
+  nearest_ = planner::kInfinity;
 }
 
 }  // namespace jink::bridge

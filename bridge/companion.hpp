@@ -108,6 +108,7 @@ class Companion {
   void measure(double now);
   void record_hazard(double now);
   [[nodiscard]] int lost_writers(double now);
+  [[nodiscard]] bool stuck(double now);
   void announce(double now);
   void next_waypoint(double now);
   [[nodiscard]] FlightPicture picture(double now);
@@ -145,6 +146,9 @@ class Companion {
   double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
   bool planner_failed_ = false;
   bool announced_cautious_ = false;
+  bool announced_stuck_ = false;
+  double nearest_ = planner::kInfinity;  // that the vehicle came to its waypoint, m
+  double gained_at_ = 0.0;               // when
   bool announced_lost_ = false;
   TrackTableCounts announced_table_;
   int announced_own_ = 0;

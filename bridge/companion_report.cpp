@@ -47,7 +47,7 @@ void Companion::measure(double now) {
   if (last_position_) summary_.path_length += (state_.position - *last_position_).norm();
   last_position_ = state_.position;
   if (stream_.active() && now - state_.position_stamp <= settings_.companion.stale_state) {
-    stream_.learn(state_.position_stamp, state_.position, state_.velocity, std::max(0.0, now - last_step_));
+    stream_.observe(state_.position_stamp, state_.position, state_.velocity, std::max(0.0, now - last_step_));
     const double error = (stream_.reference(state_.position_stamp).position - state_.position).norm();
     summary_.largest_tracking_error = std::max(summary_.largest_tracking_error, error);
     tracking_error_ = std::max(error, tracking_error_ * std::exp(-std::max(0.0, now - last_step_) / kForgetting));

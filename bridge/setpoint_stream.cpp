@@ -19,7 +19,7 @@ constexpr double kSteady = 1.0;        // m/s², of the reference, above which a
 constexpr double kLearningRate = 0.4;  // 1/s² of drag for each metre of lag
 constexpr double kMostDrag = 2.0;      // 1/s
 constexpr double kSaturated = 0.95;    // of the largest speed
-constexpr double kWaiting = 0.5;       // of what the vehicle is late, that the reference waits for it in a second
+constexpr double kWaiting = 2.0;       // of what the vehicle is late, that the reference waits for it in a second
 
 }  // namespace
 
@@ -98,17 +98,15 @@ void SetpointStream::wait(double dt) {
   waited_ += dt;
 }
 
-void SetpointStream::learn(double t, const Vec3& position, const Vec3& velocity, double dt) {
+void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity, double dt) {
   if (!active() || !is_plan_) return;
   const planner::TimedPoint point = reference(t);
   const double speed = point.velocity.norm();
   if (speed < kLearningSpeed) return;
   const double lag = (point.position - position).dot(point.velocity) / speed;
-  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) {
-    wait(kWaiting * lag / speed * dt);
-    return;
-  }
-  if (point.acceleration.norm() > kSteady) return;
+  if (lag > 0.0) wait(kWaiting * lag / speed * dt);
+  const bool saturated = lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed;
+  if (saturated || point.acceleration.norm() > kSteady) return;
   drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
 }
 
@@ -120,7 +118,9 @@ planner::TimedPoint SetpointStream::reference(double t) const {
 Setpoint SetpointStream::setpoint(double now, double yaw) const {
   const planner::TimedPoint point = reference(now + settings_.lead);
   const planner::TimedPoint later = reference(now + settings_.acceleration_lead);
-  return {point.position, point.velocity, later.acceleration + drag_ * later.velocity, yaw};
+  const double taken_off = 1.0 + settings_.damping;
+  const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
+  return {point.position, point.velocity, acceleration + drag_ * later.velocity, yaw};
 }
 
 planner::TimedPath SetpointStream::plan(double t) const {

@@ -17,6 +17,7 @@ class SetpointStream {
     double lead = 0.0;               ///< s: position and velocity are the reference's that much later (transport)
     double acceleration_lead = 0.0;  ///< s: the acceleration is (attitude loop and rotors too)
     double drag = 0.0;               ///< 1/s: deceleration per speed that the acceleration makes up for, to begin with
+    double damping = 0.0;            ///< of a commanded acceleration, that the autopilot takes off again, horizontally
     double braking = 2.0;            ///< m/s², deceleration of a brake
     double hardest = 6.0;            ///< m/s², of a brake that would leave the volume
     planner::Box volume{};           ///< in which a brake is to end
@@ -41,10 +42,10 @@ class SetpointStream {
   /// The setpoint to send at `now`, heading `yaw`.
   [[nodiscard]] Setpoint setpoint(double now, double yaw) const;
 
-  /// Learns the drag from how far the vehicle, measured at `position` with `velocity` at time t, lags behind the
-  /// reference or runs ahead of it; `dt` since the last call. Where it lags at nearly its largest speed no thrust makes
-  /// that good: then the reference waits for it instead, little by little.
-  void learn(double t, const Vec3& position, const Vec3& velocity, double dt);
+  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Where
+  /// it is late on the reference, that waits for it, little by little; from how late it is or how early in steady
+  /// flight, and not at its largest speed, at which no thrust makes good what it is late, the drag is learned.
+  void observe(double t, const Vec3& position, const Vec3& velocity, double dt);
   /// For how long the reference has waited in all, s. A path that was made to follow on an earlier reference starts
   /// later by what it has waited since.
   [[nodiscard]] double waited() const { return waited_; }

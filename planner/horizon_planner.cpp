@@ -129,12 +129,14 @@ Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous,
   if (!finite(request)) return {};
   problem_.prepare(request);
   if (std::optional<Plan> settled = without_search(request, previous)) return *std::move(settled);
+  const std::optional<Vec3> via = request.stuck ? around(request) : std::nullopt;
+  if (via) problem_.prepare(request, via);
   Plan plan = search(problem_, request, previous, random, budgets[0], pool);
   std::array<SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
   if (!previous.empty()) keep_previous(request, previous, plan);
   const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
   if (!safe && settings_.emergency_share > settings_.acceleration_share) {
-    emergency_.prepare(request);
+    emergency_.prepare(request, via);
     Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
     searches[1] = {harder.schedule, harder.generations};
     plan.evaluations += harder.evaluations;
@@ -147,6 +149,13 @@ Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous,
   plan.searches = searches;
   conclude(request, problem_.horizon(), plan);
   return plan;
+}
+
+// Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
+// else to wait for a wall to go away is for ever cheaper than to fly to its hole.
+std::optional<Vec3> HorizonPlanner::around(const PathRequest& request) const {
+  const std::vector<double> nothing(static_cast<std::size_t>(problem_.dimension()), 0.0);
+  return way_on(request, problem_.motion(nothing), problem_.horizon(), request.margin + kSeedClearance);
 }
 
 // No path is shorter than undisturbed flight, none has less of the last objective than nothing: where undisturbed
@@ -215,7 +224,9 @@ std::vector<Cost> HorizonPlanner::banded(std::span<const Cost> costs) const {
 }
 
 Plan HorizonPlanner::choose(const PathProblem& problem, const PathRequest& request, const Front& front) const {
-  const std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
+  // Of a vehicle that is stuck the plan that gets on is chosen, not the one that turns least: that one waits.
+  std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
+  if (request.stuck) weights = {1.0, 0.0, 0.0};
   const std::vector<int> order = topsis_order(banded(front.costs), problem.objectives(), weights);
   Plan best;
   // True where there is nothing left to look for.

@@ -62,6 +62,7 @@ class HorizonPlanner {
   /// With one budget for each search.
   Plan make(const PathRequest& request, const TimedPath& previous, const Random& random,
             const std::array<Budget, 2>& budgets, WorkerPool& pool);
+  [[nodiscard]] std::optional<Vec3> around(const PathRequest& request) const;
   [[nodiscard]] std::optional<Plan> without_search(const PathRequest& request, const TimedPath& previous) const;
   Plan search(PathProblem& problem, const PathRequest& request, const TimedPath& previous, const Random& random,
               const Budget& budget, WorkerPool& pool);

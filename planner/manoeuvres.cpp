@@ -112,18 +112,30 @@ TimedPath displaced(const TimedPath& undisturbed, std::span<const double> times,
   return path;
 }
 
-/// Through an opening at time `t`: waiting until then before it, beside undisturbed flight from the start on.
+/// The point of undisturbed flight's line beside an obstacle that is met.
+Vec3 across(const TimedPath& undisturbed, const PathFrame& frame, const Encounter& e) {
+  return sample(undisturbed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
+}
+
+/// Through an opening at time `t`: undisturbed flight, as late as it takes to be at the opening then, and beside its
+/// line from the start on until past the opening; then on, and at its end to the target.
 TimedPath through(const TimedPath& undisturbed, std::span<const double> times, double t, const Opening& opening,
-                  const PathFrame& frame, double cruise) {
+                  const PathFrame& frame) {
+  const auto along = [&](const Vec3& position) { return (position - frame.origin).dot(frame.axis); };
+  const double opens = along(opening.position);
+  const auto there = std::find_if(undisturbed.begin(), undisturbed.end() - 1,
+                                  [&](const auto& p) { return along(p.position) >= opens; });
+  const double delay = std::max(0.0, t - there->t);
   TimedPath path;
+  bool is_past = false;
   for (const double time : times) {
+    const Vec3 on_line = sample(undisturbed, std::max(0.0, time - delay)).position;
     const double after = time - t;
-    const double there = (opening.position - frame.origin).dot(frame.axis) + after * cruise;
-    const double undelayed = (sample(undisturbed, time).position - frame.origin).dot(frame.axis);
-    const double along = after > 0.0 ? there : std::clamp(there, 0.0, undelayed);
+    const bool arrives = is_past && time - delay >= undisturbed.back().t;
     const Vec3 place = opening.position + std::clamp(after, -kOpeningReach, kOpeningReach) * opening.velocity;
-    const Vec3 aside = place - (place - frame.origin).dot(frame.axis) * frame.axis;
-    path.push_back({time, aside + along * frame.axis, Vec3::Zero(), Vec3::Zero()});
+    const Vec3 aside = place - along(place) * frame.axis;
+    path.push_back({time, arrives ? on_line : Vec3(aside + along(on_line) * frame.axis), Vec3::Zero(), Vec3::Zero()});
+    is_past = after > 0.0;
   }
   return path;
 }
@@ -132,13 +144,13 @@ TimedPath through(const TimedPath& undisturbed, std::span<const double> times, d
 void add_ways_through(std::vector<TimedPath>& paths, const PathRequest& request, const PathFrame& frame,
                       const TimedPath& undisturbed, std::span<const double> times, const Encounter& e,
                       double clearance) {
-  const Vec3 centre = sample(undisturbed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
+  const Vec3 centre = across(undisturbed, frame, e);
   int passes = 0;
   for (const double time : times) {
     if (time < e.t || passes == kPasses) continue;
     ++passes;
     for (const Opening& opening : openings(request, frame, centre, time, clearance, kOpenings)) {
-      paths.push_back(through(undisturbed, times, time, opening, frame, request.vehicle.cruise_speed));
+      paths.push_back(through(undisturbed, times, time, opening, frame));
     }
   }
 }
@@ -201,6 +213,15 @@ std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& u
     }
   }
   return paths;
+}
+
+std::optional<Vec3> way_on(const PathRequest& request, const TimedPath& undisturbed, double until, double clearance) {
+  const PathFrame frame(request.position, request.target);
+  const std::vector<Encounter> met = encounters(request, undisturbed, until, clearance);
+  if (met.empty()) return std::nullopt;
+  const auto places = openings(request, frame, across(undisturbed, frame, met.front()), until, clearance, 1);
+  if (places.empty() || places.front().lacking > 0.0) return std::nullopt;
+  return places.front().position;
 }
 
 }  // namespace jink::planner

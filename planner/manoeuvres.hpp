@@ -2,6 +2,7 @@
 // What a pilot would try first: rough paths that the optimizer starts from. Nothing here is checked or promised free.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,5 +24,9 @@ namespace jink::planner {
 /// is to be kept from an obstacle's surface. O(obstacles · points).
 std::vector<TimedPath> manoeuvres(const PathRequest& request, const TimedPath& undisturbed,
                                   std::span<const double> times, double clearance);
+
+/// The opening through which the way leads on, where undisturbed flight is met until `until`: as manoeuvres() looks for
+/// it, at that time. Nothing where no place there keeps `clearance`, or nothing is met.
+std::optional<Vec3> way_on(const PathRequest& request, const TimedPath& undisturbed, double until, double clearance);
 
 }  // namespace jink::planner

@@ -369,8 +369,8 @@ struct MeterLanes {
   }
 
   /// After the last step: the way from the end of the horizon to the target, first to a stop, as far as braking takes,
-  /// then straight on (or back, where the target was overrun). Without the first part a path that comes fast would be
-  /// the shorter one.
+  /// then straight on (or back, where the target was overrun), or over scene.via. Without the first part a path that
+  /// comes fast would be the shorter one.
   [[gnu::always_inline]] void finish(const std::array<Cost*, kLanes>& costs) {
     const PointLanes<kLanes>& from = places[count - 1];
     const PointLanes<kLanes>& end = places[count];
@@ -379,19 +379,31 @@ struct MeterLanes {
     target.set(scene.target);
     turn(target);
     const double horizon = scene.steps * scene.step;
-    Lanes<kLanes> total;
+    PointLanes<kLanes> stop;
+    Lanes<kLanes> rest, total;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double speed = way[i] / scene.step;
       const double stopping = speed * speed * scene.inverse_braking;
       const double further = stopping / (way[i] > 0.0 ? way[i] : 1.0);
-      const double rx = target.x[i] - (end.x[i] + (end.x[i] - from.x[i]) * further);
-      const double ry = target.y[i] - (end.y[i] + (end.y[i] - from.y[i]) * further);
-      const double rz = target.z[i] - (end.z[i] + (end.z[i] - from.z[i]) * further);
-      const double rest = stopping + std::sqrt(rx * rx + ry * ry + rz * rz);
-      const double then = arrival[i] == horizon ? rest / scene.cruise : 0.0;
+      stop.x[i] = end.x[i] + (end.x[i] - from.x[i]) * further;
+      stop.y[i] = end.y[i] + (end.y[i] - from.y[i]) * further;
+      stop.z[i] = end.z[i] + (end.z[i] - from.z[i]) * further;
+      const double rx = target.x[i] - stop.x[i];
+      const double ry = target.y[i] - stop.y[i];
+      const double rz = target.z[i] - stop.z[i];
+      rest[i] = stopping + std::sqrt(rx * rx + ry * ry + rz * rz);
+    }
+    for (std::size_t i = 0; scene.via && i < kLanes; ++i) {
+      const Vec3 place(stop.x[i], stop.y[i], stop.z[i]);
+      const Vec3 there = *scene.via - place;
+      if (there.dot(scene.frame.axis) > 0.0)
+        rest[i] += there.norm() + (scene.target - *scene.via).norm() - (scene.target - place).norm();
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double then = arrival[i] == horizon ? rest[i] / scene.cruise : 0.0;
       const double late = arrival[i] + then - scene.undisturbed_time;
       const double lost = late > 0.0 ? late : 0.0;
-      total[i] = length[i] + rest + scene.time_weight * scene.cruise * lost +
+      total[i] = length[i] + rest[i] + scene.time_weight * scene.cruise * lost +
                  scene.deviation_weight * deviation[i] / scene.steps;
     }
     for (std::size_t i = 0; i < kLanes; ++i) {

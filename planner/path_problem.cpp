@@ -41,7 +41,6 @@ PathProblem::PathProblem(const HorizonSettings& settings)
     throw std::invalid_argument("horizon: " + std::to_string(scene_.steps) + " steps of time / step; at most " +
                                 std::to_string(kMaxSteps));
   scene_.step = settings.step;
-  scene_.time_weight = settings.time_weight;
   scene_.deviation_weight = settings.deviation_weight;
   scene_.reach.resize(index(settings.waypoints));
   scene_.undisturbed.resize(index(scene_.steps + 1));
@@ -50,12 +49,14 @@ PathProblem::PathProblem(const HorizonSettings& settings)
   where_.resize(index(scene_.steps));
 }
 
-void PathProblem::prepare(const PathRequest& request) {
+void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>& via) {
   request_ = request;
   const double acceleration = most_acceleration();
   scene_.position = request.position;
   scene_.velocity = request.velocity;
   scene_.target = request.target;
+  scene_.via = via;
+  scene_.time_weight = (via ? kHurry : 1.0) * settings_.time_weight;
   scene_.volume = request.volume;
   scene_.frame = PathFrame(request.position, request.target);
   scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,

@@ -2,6 +2,7 @@
 // The remaining path at once: K waypoints, each a place and a time, and the motion that follows from them.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct PathRequest {
   double margin = 0.0;                    ///< kept from every obstacle on top of the radii
   double track_acceleration = 0.0;        ///< what a track's acceleration may be off by, m/s²
   double acceleration_trust = kInfinity;  ///< as in predict_position
+  bool stuck = false;                     ///< the vehicle has come no nearer to the target for a while
 };
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
@@ -47,8 +49,10 @@ class PathProblem final : public Problem {
 
   /// Prepares a plan: the frame, undisturbed flight, and for every step of the horizon the obstacles that can be met in
   /// it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
-  /// O(tracks + near tracks · steps); no allocation once it has seen as many obstacles.
-  void prepare(const PathRequest& request);
+  /// With `via` the way on from a horizon that ends short of that place, along the axis, leads over it, straight on
+  /// being closed, and lost time counts kHurry times: what is put off costs next to nothing otherwise. O(tracks + near
+  /// tracks · steps); no allocation once it has seen as many obstacles.
+  void prepare(const PathRequest& request, const std::optional<Vec3>& via = {});
 
   [[nodiscard]] int dimension() const override { return 3 * settings_.waypoints; }
   [[nodiscard]] int objectives() const override { return 3; }
@@ -74,6 +78,7 @@ class PathProblem final : public Problem {
 
  private:
   static constexpr int kMaxSteps = 256;
+  static constexpr double kHurry = 4.0;
 
   [[nodiscard]] double most_acceleration() const {
     return settings_.planned_acceleration(request_.vehicle.max_acceleration);

@@ -61,6 +61,7 @@ struct PathScene {
   Vec3 position = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 target = Vec3::Zero();
+  std::optional<Vec3> via;  ///< over which the way on leads from where the horizon ends short of it
   Box volume;
   PathFrame frame;
   Follower follower;

@@ -44,7 +44,7 @@ struct FlightLogOptions {
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], margin, track_acceleration,
-/// acceleration_trust, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age],
+/// acceleration_trust, stuck, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age],
 /// ...], forecasts: [{track, radius, position_sigma, velocity_sigma, replaces, bounces: [begin, velocity, min, max] or
 /// swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin,
 /// position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]},

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "planner/horizon_planner.hpp"
 #include "planner/manoeuvres.hpp"
 
 namespace jink::planner {
@@ -114,6 +117,61 @@ TEST(Openings, AreFlownThroughByAManoeuvre) {
     through += free ? 1 : 0;
   }
   EXPECT_GT(through, 0);
+}
+
+// A target right behind the wall is where the ways through lead, not beyond it and out of the volume.
+TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
+  const std::vector<Track> tracks = wall({{2.6, 1.7}});
+  PathRequest r = request(tracks);
+  r.target = {11, 0, 3};
+  r.volume.max.x() = 11.5;
+  PathProblem problem{HorizonSettings{}};
+  problem.prepare(r);
+  const TimedPath undisturbed = problem.motion(std::vector<double>(18, 0.0));
+  int through = 0;
+  for (const TimedPath& path : manoeuvres(r, undisturbed, std::vector<double>{1, 2, 3, 4, 5, 6}, kClearance)) {
+    const bool aside = std::any_of(path.begin(), path.end(), [](const TimedPoint& point) {
+      return std::abs(point.position.x() - 9.0) < 1.0 && (point.position - Vec3(9, 2.6, 1.7)).norm() < 1.0;
+    });
+    if (!aside) continue;
+    ++through;
+    for (const TimedPoint& point : path) EXPECT_LE(point.position.x(), 11.0 + 1e-6);
+  }
+  EXPECT_GE(through, 3);
+}
+
+TEST(Openings, AreWhereTheWayLeadsOn) {
+  const auto on = [](const std::vector<Track>& tracks) {
+    const PathRequest r = request(tracks);
+    TimedPath undisturbed;
+    for (int i = 0; i <= 60; ++i) undisturbed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
+    return way_on(r, undisturbed, 6.0, kClearance);
+  };
+  const std::optional<Vec3> place = on(wall({{2.6, 1.7}}));
+  ASSERT_TRUE(place);
+  EXPECT_LT((*place - Vec3(9, 2.6, 1.7)).norm(), 0.5);
+  EXPECT_FALSE(on(wall({{1.3, 3.9, 0.7}})));  // too small to pass
+  EXPECT_FALSE(on({}));
+}
+
+// To wait for a wall to go away is for ever cheaper than the way to a hole far aside, until waiting has not helped.
+TEST(Openings, AreTakenByAVehicleThatIsStuck) {
+  const std::vector<Track> tracks = wall({{1.8, 4.5}});
+  PathRequest r = request(tracks);
+  r.position = {5, -2, 1.5};
+  r.velocity = Vec3::Zero();
+  r.target = {11, -2, 1.5};
+  r.margin = HorizonSettings{}.margin;
+  HorizonPlanner planner{HorizonSettings{}};
+  WorkerPool pool(2);
+  const auto reaches = [&] {
+    const Plan plan = planner.plan(r, {}, 1, 0, {HorizonSettings{}.generations}, pool);
+    EXPECT_TRUE(plan.verification.free());
+    return sample(plan.path, planner.horizon()).position.x();
+  };
+  EXPECT_LT(reaches(), 8.0);
+  r.stuck = true;
+  EXPECT_GT(reaches(), 10.0);
 }
 
 }  // namespace

@@ -439,6 +439,28 @@ TEST(PathProblem, LostTimeCountsAsLength) {
   EXPECT_NEAR(problem.cost_of(late).f[0] - problem.cost_of(straight).f[0], 0.5 * 3.0 * 1.0, 0.16);
 }
 
+// The way over the place instead of straight on counts in full, and as lost time, four times as much of it.
+TEST(PathProblem, TheWayOnLeadsOverAPlaceThatIsGiven) {
+  HorizonSettings settings;
+  PathProblem problem{settings};
+  const PathRequest r = request({40, 0, 2});
+  problem.prepare(r);
+  const std::vector<double> straight = zeros(problem);
+  const double before = evaluate(problem, straight).f[0];
+  const TimedPoint end = sample(problem.motion(straight), problem.horizon());
+  const double braking = settings.planned_acceleration(r.vehicle.max_acceleration);
+  const Vec3 stop = end.position + Vec3(end.velocity.squaredNorm() / (2.0 * braking), 0, 0);
+  const Vec3 via(30, 6, 5);
+  const double detour = (via - stop).norm() + (r.target - via).norm() - (r.target - stop).norm();
+  ASSERT_GT(detour, 1.0);
+  problem.prepare(r, via);
+  EXPECT_NEAR(evaluate(problem, straight).f[0] - before, (1.0 + 4.0 * settings.time_weight) * detour, 0.1);
+  problem.prepare(r, Vec3(5, 6, 5));  // passed by then
+  EXPECT_NEAR(evaluate(problem, straight).f[0], before, 0.05);
+  problem.prepare(r);
+  EXPECT_EQ(evaluate(problem, straight).f[0], before);
+}
+
 // Right angle to the left, then straight on to the target behind it: π/2, and the way back to the line.
 TEST(PathProblem, SteeringIsTheSumOfTheAnglesBetweenLegs) {
   PathProblem problem{HorizonSettings{}};

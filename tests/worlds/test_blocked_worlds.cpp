@@ -213,6 +213,17 @@ TEST(ClosedLoop, PassesThroughAWallWithAWanderingHole) {
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
+// A hole that wanders 4 m aside and 2 m above of a vehicle between wall and wall: to wait is cheaper in every single
+// plan.
+TEST(ClosedLoop, FliesToAHoleFarAsideWhereWaitingDoesNotHelp) {
+  config::Scenario scenario = sim::make_world("walls", 2431836138);
+  scenario.start = {2.2, 13.2, 1.6};
+  scenario.time_limit = 60.0;
+  const sim::ClosedLoopResult result = fly(scenario);
+  EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
 class ThreadCount : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(ThreadCount, DoesNotChangeABitOfTheFlight) {
