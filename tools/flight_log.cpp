@@ -15,7 +15,7 @@ Json vector_json(const planner::Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-FlightLog::FlightLog(const std::filesystem::path& file, Json header, const FlightLogOptions& options)
+FlightLog::FlightLog(const std::filesystem::path& file, const Json& header, const FlightLogOptions& options)
     : file_(file), options_(options), out_(file) {
   if (!out_) throw UsageError("--log: '" + file.string() + "' cannot be written");
   Json first{{"type", "header"}, {"format", "jink-log/1"}, {"version", JINK_VERSION}};

@@ -276,8 +276,8 @@ struct Hole {
   double height = 0.0;  // m, of its middle
 };
 
-void PrintTo(const Hole& hole, std::ostream* out) {
-  *out << "radius " << hole.radius << " m, height " << hole.height << " m";
+std::ostream& operator<<(std::ostream& out, const Hole& hole) {
+  return out << "radius " << hole.radius << " m, height " << hole.height << " m";
 }
 
 class WallWithAHole : public testing::TestWithParam<Hole> {};
