@@ -103,6 +103,11 @@ void LiveFlight::on_event(double, std::string_view name, const std::string& deta
     const bool flies = detail.starts_with("flying");
     flown_ = flying_ && !flies;
     flying_ = flying_ || flies;
+    if (flown_) {
+      status_.progress.reset();
+      status_.to_go.reset();
+      status_.plan_ms.reset();
+    }
   }
   if (name == "waypoint" && waypoint_ + 1 < mission_.waypoints.size()) ++waypoint_;
 }

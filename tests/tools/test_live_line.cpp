@@ -83,7 +83,8 @@ TEST_F(LiveFlightTest, MeasuresTheWayAlongTheWaypoints) {
   EXPECT_NEAR(*live_.status().progress, 13.0 / 15.0, 1e-12);
   live_.on_event(8.1, "phase", "landing");
   at(12.0, {10, 3, 0});
-  EXPECT_NEAR(*live_.status().progress, 13.0 / 15.0, 1e-12) << "a landing does not lead away from the target";
+  EXPECT_FALSE(live_.status().progress) << "a landing is no way to the target";
+  EXPECT_FALSE(live_.status().to_go);
 }
 
 TEST_F(LiveFlightTest, NamesEveryInputThatIsMissingOrOld) {
