@@ -134,8 +134,7 @@ TEST(Companion, AppliesAPlanFromItsStart) {
   }
   while (loop.last().velocity.x() == 0.0) loop.turn();
   EXPECT_NEAR(loop.last().velocity.x(), 2.0, 1e-9);
-  // But for what it waits for this vehicle, which is one turn late.
-  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - Loop::kTurn - start), 2e-3);
+  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - Loop::kTurn - start), 1e-6);
   EXPECT_EQ(loop.companion.summary().deadline_misses, 0U);
 }
 

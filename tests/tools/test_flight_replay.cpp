@@ -202,6 +202,24 @@ TEST(FlightReplay, PlansAmongATeamsPathsAreRepeated) {
   EXPECT_THROW(compare(folder.log(header + "\n" + changed.dump() + "\n")), std::runtime_error);
 }
 
+// That the vehicle was stuck is recorded, and decides; a log from before it was says nothing of it, and is read.
+TEST(FlightReplay, PlansOfAVehicleThatIsStuckAreRepeated) {
+  const Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  bridge::PlanJob next = job(0, {sphere(1, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8)});
+  next.request.stuck = true;
+  plans.make(std::move(next), std::chrono::seconds(10));
+  plans.close();
+  EXPECT_TRUE(compare(file).differences.empty());
+  const auto [header, line] = first_lines(file);
+  Json changed = Json::parse(line);
+  changed["from"]["stuck"] = false;
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  changed["from"].erase("stuck");
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+}
+
 /// A log of one plan, line by line: header, plan.
 std::array<std::string, 2> one_plan(const Folder& folder) {
   const auto file = folder.path() / "one.jsonl";
