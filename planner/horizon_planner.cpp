@@ -64,6 +64,10 @@ bool less_harm(const Verification& a, const Verification& b) {
   return a.contact_speed < b.contact_speed;
 }
 
+TimedPath undisturbed(const PathProblem& problem) {
+  return problem.motion(std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0));
+}
+
 /// What a verified horizon and the whole path's check amount to.
 void conclude(const PathRequest& request, double horizon, Plan& plan) {
   if (!plan.verification.free()) {
@@ -90,7 +94,7 @@ std::vector<double> start_solutions(const PathProblem& problem, const PathReques
                                     const HorizonSettings& settings) {
   const auto d = static_cast<std::size_t>(problem.dimension());
   std::vector<double> initial(d, 0.0);
-  const TimedPath undisturbed = problem.motion(initial);
+  const TimedPath straight = undisturbed(problem);
   const auto add = [&](const TimedPath& path) {
     initial.resize(initial.size() + d);
     problem.imitate(path, {initial.data() + initial.size() - d, d});
@@ -99,7 +103,7 @@ std::vector<double> start_solutions(const PathProblem& problem, const PathReques
   if (!settings.seeding) return initial;
   std::vector<double> times;
   for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
-  for (const TimedPath& path : manoeuvres(request, undisturbed, times, request.margin + kSeedClearance)) add(path);
+  for (const TimedPath& path : manoeuvres(request, straight, times, request.margin + kSeedClearance)) add(path);
   return initial;
 }
 
@@ -154,17 +158,15 @@ Plan HorizonPlanner::make(const PathRequest& request, const TimedPath& previous,
 // Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
 // else to wait for a wall to go away is for ever cheaper than to fly to its hole.
 std::optional<Vec3> HorizonPlanner::around(const PathRequest& request) const {
-  const std::vector<double> nothing(static_cast<std::size_t>(problem_.dimension()), 0.0);
-  return way_on(request, problem_.motion(nothing), problem_.horizon(), request.margin + kSeedClearance);
+  return way_on(request, undisturbed(problem_), problem_.horizon(), request.margin + kSeedClearance);
 }
 
 // No path is shorter than undisturbed flight, none has less of the last objective than nothing: where undisturbed
 // flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
 // whatever a search found, it is kept.
 std::optional<Plan> HorizonPlanner::without_search(const PathRequest& request, const TimedPath& previous) const {
-  const std::vector<double> nothing(static_cast<std::size_t>(problem_.dimension()), 0.0);
   Plan plan;
-  plan.path = problem_.motion(nothing);
+  plan.path = undisturbed(problem_);
   const Cost ideal = problem_.cost_of(plan.path);
   const auto settle = [&](Plan& settled) {
     settled.verification = verify_until(settled.path, request, problem_.horizon());
