@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Target jink_idl: the DDS types of bridge/idl, generated at build time by fastddsgen, with Fast DDS and Fast CDR.
+# Target jink_idl: the DDS types of bridge/dds/idl, generated at build time by fastddsgen, with Fast DDS and Fast CDR.
 # Not our code: its headers are SYSTEM and it is compiled without the project's warnings. Only the data types are
-# compiled in: topics travel as payloads (bridge/dds_support), so fastddsgen's own type support is not needed.
+# compiled in: topics travel as payloads (bridge/dds/payload_io), so fastddsgen's own type support is not needed.
 find_package(fastcdr REQUIRED)
 find_package(fastrtps 2.9 REQUIRED)
 find_program(FASTDDSGEN fastddsgen)
@@ -14,7 +14,7 @@ endif()
 set(_idl_names RosCommon ObstacleTracks Intents TrackedObjects Px4)
 set(_idl_dir ${PROJECT_BINARY_DIR}/idl)
 file(MAKE_DIRECTORY ${_idl_dir})  # fastddsgen does not make it
-list(TRANSFORM _idl_names PREPEND ${PROJECT_SOURCE_DIR}/bridge/idl/ OUTPUT_VARIABLE _idl_files)
+list(TRANSFORM _idl_names PREPEND ${PROJECT_SOURCE_DIR}/bridge/dds/idl/ OUTPUT_VARIABLE _idl_files)
 list(TRANSFORM _idl_files APPEND .idl)
 set(_idl_outputs)
 foreach(_name ${_idl_names})
@@ -22,9 +22,9 @@ foreach(_name ${_idl_names})
 endforeach()
 add_custom_command(
   OUTPUT ${_idl_outputs}
-  COMMAND ${FASTDDSGEN} -replace -I ${PROJECT_SOURCE_DIR}/bridge/idl -d ${_idl_dir} ${_idl_files}
+  COMMAND ${FASTDDSGEN} -replace -I ${PROJECT_SOURCE_DIR}/bridge/dds/idl -d ${_idl_dir} ${_idl_files}
   DEPENDS ${_idl_files}
-  COMMENT "Generating DDS types from bridge/idl"
+  COMMENT "Generating DDS types from bridge/dds/idl"
   VERBATIM)
 
 add_library(jink_idl STATIC ${_idl_outputs})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Target mavsdk_c: MAVSDK's C interface, out of the Python wheel in .venv. There is no C or C++ development package of
-# it on Debian; the wheel's one library needs the C library alone, and bridge/mavsdk_c.h declares what is used of it.
+# it on Debian; the wheel's one library needs the C library alone, and bridge/mavsdk/c_api.h declares what is used of it.
 # Its SONAME has a version that the file's name lacks, so it is copied to that name beside the binaries.
 file(GLOB _mavsdk_wheel ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/mavsdk/lib/libcmavsdk.so)
 if(NOT _mavsdk_wheel)

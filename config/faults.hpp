@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
 
@@ -50,7 +50,7 @@ struct Fault {
   LinkDirection direction = LinkDirection::kBoth;  ///< the four of the link
   double rate = 0.0;                               ///< packet_loss, reorder: 0 to 1
   double seconds = 0.0;                            ///< delay
-  planner::Vec3 by = planner::Vec3::Zero();        ///< estimate_jump: m, ENU
+  Vec3 by = Vec3::Zero();                          ///< estimate_jump: m, ENU
   double position = 0.0;                           ///< track_noise: standard deviation per axis, m
   double velocity = 0.0;                           ///< track_noise: m/s
   int count = 0;                                   ///< tracks_flood

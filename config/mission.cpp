@@ -62,9 +62,9 @@ std::string read_connection(const Value& value) {
 }
 
 // A waypoint counts at the height at which it is flown, see load_mission.
-planner::Vec3 read_waypoint(const Value& value, const Mission& mission) {
-  planner::Vec3 point = value.vec3(kCoordinate);
-  planner::Vec3 flown = point;
+Vec3 read_waypoint(const Value& value, const Mission& mission) {
+  Vec3 point = value.vec3(kCoordinate);
+  Vec3 flown = point;
   flown.z() = std::max(point.z(), mission.min_height);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
 
@@ -34,12 +34,12 @@ struct Mission {
   std::string name;
   std::string connection;    ///< a MAVSDK URL
   std::string vehicle_name;  ///< "inline" where the file gives a map
-  planner::VehicleLimits vehicle;
+  planner::base::VehicleLimits vehicle;
   double takeoff_height = 1.5;  ///< above the ground at take-off
   double min_height = 1.0;      ///< the plan never goes below; ENU z
-  std::vector<planner::Vec3> waypoints;
+  std::vector<Vec3> waypoints;
   Arrival arrival = Arrival::kLand;
-  planner::Box geofence;  ///< unbounded when the file has none
+  planner::base::Box geofence;  ///< unbounded when the file has none
   int dds_domain = 0;
   std::string dds_namespace;  ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
   Transport state = Transport::kMavlink;

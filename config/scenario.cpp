@@ -5,7 +5,7 @@
 
 #include "config/fault_reader.hpp"
 #include "config/vehicle_reader.hpp"
-#include "planner/enclosing_sphere.hpp"
+#include "planner/geometry/enclosing_sphere.hpp"
 
 namespace jink::config {
 namespace {
@@ -41,7 +41,7 @@ Shape read_shape(const Map& obstacle) {
   const Value vertices = obstacle.at("vertices", "");
   for (const Value& vertex : vertices.list(1, kMostPoints)) shape.vertices.push_back(vertex.vec3(within(1e3)));
   // As a radius has to be: the bridge takes a track without size, or of a giant, for a mistake and leaves it out.
-  const double radius = planner::smallest_enclosing_sphere(shape.vertices).radius;
+  const double radius = planner::geometry::smallest_enclosing_sphere(shape.vertices).radius;
   if (!kSize.contains(radius))
     vertices.fail("has an enclosing sphere of radius " + number_text(radius) + "; expected one in " + kSize.text());
   return shape;
@@ -171,7 +171,7 @@ EstimateErrors read_estimate(const Value& value) {
   return errors;
 }
 
-Vec3 read_point_in_world(const Map& map, std::string_view key, const std::optional<planner::Box>& world) {
+Vec3 read_point_in_world(const Map& map, std::string_view key, const std::optional<planner::base::Box>& world) {
   Vec3 point = map.vec3(key, kCoordinate);
   for (std::size_t i = 0; world && i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "config/faults.hpp"
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
-
-using planner::Vec3;
 
 struct SphereShape {
   double radius = 0.0;
@@ -78,12 +76,12 @@ struct Obstacle {
 
 /// How the world is measured: what the tracks look like.
 struct Sensing {
-  double range = planner::kInfinity;  ///< from the vehicle's centre to the obstacle's surface
-  double rate = 20.0;                 ///< Hz
-  double delay = 0.0;                 ///< from measurement to publication
-  double position_noise = 0.0;        ///< standard deviation per axis
-  double velocity_noise = 0.0;        ///< standard deviation per axis
-  double dropout = 0.0;               ///< probability that a track is missing from a message
+  double range = planner::base::kInfinity;  ///< from the vehicle's centre to the obstacle's surface
+  double rate = 20.0;                       ///< Hz
+  double delay = 0.0;                       ///< from measurement to publication
+  double position_noise = 0.0;              ///< standard deviation per axis
+  double velocity_noise = 0.0;              ///< standard deviation per axis
+  double dropout = 0.0;                     ///< probability that a track is missing from a message
   bool operator==(const Sensing&) const = default;
 };
 
@@ -109,7 +107,7 @@ struct ScenarioVehicle {
   Vec3 start = Vec3::Zero();
   Vec3 target = Vec3::Zero();
   std::string vehicle_name;  ///< as Scenario's
-  planner::VehicleLimits vehicle;
+  planner::base::VehicleLimits vehicle;
 };
 
 struct Scenario {
@@ -118,8 +116,8 @@ struct Scenario {
   Vec3 target = Vec3::Zero();
   double time_limit = 0.0;
   std::string vehicle_name;  ///< "inline" where the file gives a map
-  planner::VehicleLimits vehicle;
-  std::optional<planner::Box> world;
+  planner::base::VehicleLimits vehicle;
+  std::optional<planner::base::Box> world;
   Sensing sensing;
   std::vector<Obstacle> obstacles;
   Wind wind;

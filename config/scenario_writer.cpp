@@ -92,7 +92,7 @@ struct AddMotion {
   }
 };
 
-std::string vehicle_text(const std::string& name, const planner::VehicleLimits& limits) {
+std::string vehicle_text(const std::string& name, const planner::base::VehicleLimits& limits) {
   if (is_project_vehicle(name, limits)) return in_quotes(name);
   FlowMap map;
   map.add("radius", limits.radius).add("length", limits.length).add("mass", limits.mass);

@@ -11,12 +11,12 @@
 namespace jink::config {
 namespace {
 
-using planner::Axis;
-using planner::Constraint;
-using planner::HorizonSettings;
-using planner::Operators;
-using planner::OptimizerSettings;
-using planner::PaperSettings;
+using planner::base::Axis;
+using planner::base::Constraint;
+using planner::base::HorizonSettings;
+using planner::base::Operators;
+using planner::base::OptimizerSettings;
+using planner::base::PaperSettings;
 
 /// How a file spells the values of an enumeration, in their order.
 template <class Enum>

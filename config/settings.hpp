@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/settings.hpp"
+#include "planner/base/settings.hpp"
 
 namespace jink::config {
 
@@ -32,9 +32,9 @@ struct CompanionSettings {
 };
 
 struct Settings {
-  planner::OptimizerSettings optimizer;
-  planner::PaperSettings paper;
-  planner::HorizonSettings horizon;
+  planner::base::OptimizerSettings optimizer;
+  planner::base::PaperSettings paper;
+  planner::base::HorizonSettings horizon;
   CompanionSettings companion;
 };
 

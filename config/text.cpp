@@ -92,7 +92,7 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
-std::string vector_text(const planner::Vec3& vector) {
+std::string vector_text(const Vec3& vector) {
   return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + ", " + number_text(vector.z()) + "]";
 }
 

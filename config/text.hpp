@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
 
@@ -52,7 +52,7 @@ std::optional<long> parse_integer(std::string_view text);
 /// The shortest decimal that reads back as the same double.
 std::string number_text(double value);
 /// "[x, y, z]", each as number_text().
-std::string vector_text(const planner::Vec3& vector);
+std::string vector_text(const Vec3& vector);
 
 /// The names in one line: "a, b, c".
 std::string join(std::span<const std::string_view> names);

@@ -14,28 +14,28 @@ namespace {
 
 struct Field {
   std::string_view name;
-  double planner::VehicleLimits::*member;
+  double planner::base::VehicleLimits::*member;
   Range range;
 };
 
 // No aircraft of this kind comes near the upper bounds; a value beyond them is in the wrong unit.
 constexpr std::array<Field, 8> kFields = {{
-    {"radius", &planner::VehicleLimits::radius, above(0, 100)},
-    {"length", &planner::VehicleLimits::length, above(0, 100)},
-    {"mass", &planner::VehicleLimits::mass, above(0, 10000)},
-    {"max_speed", &planner::VehicleLimits::max_speed, above(0, 1000)},
-    {"cruise_speed", &planner::VehicleLimits::cruise_speed, above(0, 1000)},
-    {"max_acceleration", &planner::VehicleLimits::max_acceleration, above(0, 1000)},
-    {"max_jerk", &planner::VehicleLimits::max_jerk, above(0, 100000)},
-    {"max_climb", &planner::VehicleLimits::max_climb, above(0, 1000)},
+    {"radius", &planner::base::VehicleLimits::radius, above(0, 100)},
+    {"length", &planner::base::VehicleLimits::length, above(0, 100)},
+    {"mass", &planner::base::VehicleLimits::mass, above(0, 10000)},
+    {"max_speed", &planner::base::VehicleLimits::max_speed, above(0, 1000)},
+    {"cruise_speed", &planner::base::VehicleLimits::cruise_speed, above(0, 1000)},
+    {"max_acceleration", &planner::base::VehicleLimits::max_acceleration, above(0, 1000)},
+    {"max_jerk", &planner::base::VehicleLimits::max_jerk, above(0, 100000)},
+    {"max_climb", &planner::base::VehicleLimits::max_climb, above(0, 1000)},
 }};
 
-planner::VehicleLimits read_limits(const Value& value) {
+planner::base::VehicleLimits read_limits(const Value& value) {
   std::vector<std::string_view> keys;
   keys.reserve(kFields.size());
   for (const Field& field : kFields) keys.push_back(field.name);
   const Map map(value, std::move(keys));
-  planner::VehicleLimits limits;
+  planner::base::VehicleLimits limits;
   for (const Field& field : kFields) limits.*field.member = map.number(field.name, field.range);
   if (limits.cruise_speed > limits.max_speed) {
     map.at("cruise_speed", "").fail("is above max_speed; expected a number in " + above(0, limits.max_speed).text());
@@ -65,16 +65,16 @@ std::set<std::string> names_in(const std::vector<std::filesystem::path>& folders
 
 }  // namespace
 
-planner::VehicleLimits load_vehicle(const std::filesystem::path& file) {
+planner::base::VehicleLimits load_vehicle(const std::filesystem::path& file) {
   return read_limits(read_document(file));
 }
 
-bool is_project_vehicle(const std::string& name, const planner::VehicleLimits& limits) {
+bool is_project_vehicle(const std::string& name, const planner::base::VehicleLimits& limits) {
   if (name.empty() || !is_file_name(name)) return false;
   const std::filesystem::path file = config_folder() / "vehicles" / (name + ".yaml");
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return false;
-  const planner::VehicleLimits known = load_vehicle(file);
+  const planner::base::VehicleLimits known = load_vehicle(file);
   return std::all_of(kFields.begin(), kFields.end(),
                      [&](const Field& field) { return known.*field.member == limits.*field.member; });
 }

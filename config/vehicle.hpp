@@ -4,12 +4,12 @@
 
 #include <filesystem>
 
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
 
 /// Reads and checks a vehicle file. Its keys are the fields of VehicleLimits, all required and above 0, with
 /// cruise_speed <= max_speed. Throws ConfigError (config/error.hpp).
-planner::VehicleLimits load_vehicle(const std::filesystem::path& file);
+planner::base::VehicleLimits load_vehicle(const std::filesystem::path& file);
 
 }  // namespace jink::config

@@ -11,7 +11,7 @@ namespace jink::config {
 
 struct NamedVehicle {
   std::string name;  ///< "inline" where the file gives a map
-  planner::VehicleLimits limits;
+  planner::base::VehicleLimits limits;
 };
 
 /// Reads `value`, found in `file`. A name is looked up in `vehicles`; where that is empty, in vehicles/ beside the
@@ -20,6 +20,6 @@ NamedVehicle read_vehicle(const Value& value, const std::filesystem::path& file,
 
 /// Whether vehicles/ of config_folder() has a file of that name that says just these limits. Throws ConfigError where
 /// there is one that cannot be read.
-bool is_project_vehicle(const std::string& name, const planner::VehicleLimits& limits);
+bool is_project_vehicle(const std::string& name, const planner::base::VehicleLimits& limits);
 
 }  // namespace jink::config

@@ -141,7 +141,7 @@ std::string Value::text() const {
   return text;
 }
 
-planner::Vec3 Value::vec3(const Range& range) const {
+Vec3 Value::vec3(const Range& range) const {
   if (!node_.IsSequence() || node_.size() != 3) fail_type(vec3_in(range));
   const std::vector<Value> items = list(3, 3);
   return {items[0].number(range), items[1].number(range), items[2].number(range)};
@@ -235,18 +235,18 @@ std::string Map::text(std::string_view key) const {
   return at(key, "text").text();
 }
 
-planner::Vec3 Map::vec3(std::string_view key, const Range& range) const {
+Vec3 Map::vec3(std::string_view key, const Range& range) const {
   return at(key, vec3_in(range)).vec3(range);
 }
 
-planner::Vec3 Map::vec3_or(std::string_view key, const Range& range, const planner::Vec3& fallback) const {
+Vec3 Map::vec3_or(std::string_view key, const Range& range, const Vec3& fallback) const {
   const std::optional<Value> value = find(key);
   return value ? value->vec3(range) : fallback;
 }
 
-planner::Box read_box(const Value& value, const Range& range) {
+planner::base::Box read_box(const Value& value, const Range& range) {
   const Map map(value, {"min", "max"});
-  planner::Box box{map.vec3("min", range), map.vec3("max", range)};
+  planner::base::Box box{map.vec3("min", range), map.vec3("max", range)};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (box.min[axis] < box.max[axis]) continue;
     const Value max = map.at("max", "").list(3, 3)[static_cast<std::size_t>(axis)];

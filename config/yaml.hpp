@@ -14,7 +14,7 @@
 
 #include "config/error.hpp"
 #include "config/text.hpp"
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::config {
 
@@ -34,7 +34,7 @@ class Value {
   /// A non-empty scalar of printable text, at most 1000 bytes.
   [[nodiscard]] std::string text() const;
   /// A list of three numbers, each in `range`.
-  [[nodiscard]] planner::Vec3 vec3(const Range& range) const;
+  [[nodiscard]] Vec3 vec3(const Range& range) const;
   /// A list of numbers, min_size to max_size of them.
   [[nodiscard]] std::vector<Value> list(std::size_t min_size, std::size_t max_size) const;
   /// The index of this text among `names`.
@@ -75,8 +75,8 @@ class Map {
   [[nodiscard]] double number_or(std::string_view key, const Range& range, double fallback) const;
   [[nodiscard]] int integer(std::string_view key, const Range& range) const;
   [[nodiscard]] std::string text(std::string_view key) const;
-  [[nodiscard]] planner::Vec3 vec3(std::string_view key, const Range& range) const;
-  [[nodiscard]] planner::Vec3 vec3_or(std::string_view key, const Range& range, const planner::Vec3& fallback) const;
+  [[nodiscard]] Vec3 vec3(std::string_view key, const Range& range) const;
+  [[nodiscard]] Vec3 vec3_or(std::string_view key, const Range& range, const Vec3& fallback) const;
   /// The map itself, for errors that concern several of its keys.
   [[nodiscard]] const Value& value() const { return value_; }
 
@@ -96,6 +96,6 @@ class Map {
 Value read_document(const std::filesystem::path& file);
 
 /// A box given by `min` and `max`, both required, min < max on each axis.
-planner::Box read_box(const Value& value, const Range& range);
+planner::base::Box read_box(const Value& value, const Range& range);
 
 }  // namespace jink::config

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "yaml_case.hpp"
+#include "tests/config/yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -36,11 +36,11 @@ TEST(LoadMission, ReadsEveryKey) {
   EXPECT_EQ(m.takeoff_height, 2.5);
   EXPECT_EQ(m.min_height, 1.2);
   ASSERT_EQ(m.waypoints.size(), 2U);
-  EXPECT_EQ(m.waypoints[0], planner::Vec3(5, 5, 2));
-  EXPECT_EQ(m.waypoints[1], planner::Vec3(20, 0, 0));  // lower than min_height: left as it is, raised in flight
+  EXPECT_EQ(m.waypoints[0], Vec3(5, 5, 2));
+  EXPECT_EQ(m.waypoints[1], Vec3(20, 0, 0));  // lower than min_height: left as it is, raised in flight
   EXPECT_EQ(m.arrival, Arrival::kHold);
-  EXPECT_EQ(m.geofence.min, planner::Vec3(-50, -40, 0.5));
-  EXPECT_EQ(m.geofence.max, planner::Vec3(50, 40, 20));
+  EXPECT_EQ(m.geofence.min, Vec3(-50, -40, 0.5));
+  EXPECT_EQ(m.geofence.max, Vec3(50, 40, 20));
   EXPECT_EQ(m.dds_domain, 7);
   EXPECT_FALSE(m.tracks.required);
   EXPECT_EQ(m.tracks.timeout_s, 1.5);
@@ -58,7 +58,7 @@ TEST(LoadMission, FillsInWhatIsOptional) {
   EXPECT_EQ(m.takeoff_height, defaults.takeoff_height);
   EXPECT_EQ(m.min_height, defaults.min_height);
   EXPECT_EQ(m.arrival, Arrival::kLand);
-  EXPECT_EQ(m.geofence.max, planner::Box{}.max);
+  EXPECT_EQ(m.geofence.max, planner::base::Box{}.max);
   EXPECT_EQ(m.dds_domain, 0);
   EXPECT_TRUE(m.tracks.required);
   EXPECT_EQ(m.tracks.timeout_s, 1.0);

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "yaml_case.hpp"
+#include "tests/config/yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -110,7 +110,7 @@ TEST(LoadScenario, FillsInWhatIsOptional) {
              "\nsensing: {delay: 0.2}\nobstacles:\n- {radius: 1, position: [9, 9, 9]}\n");
   EXPECT_EQ(s.time_limit, 10.0 * 5.0 / 5.0 + 30.0);
   EXPECT_FALSE(s.world.has_value());
-  EXPECT_EQ(s.sensing.range, planner::kInfinity);
+  EXPECT_EQ(s.sensing.range, planner::base::kInfinity);
   EXPECT_EQ(s.sensing.rate, 20.0);
   EXPECT_EQ(s.sensing.delay, 0.2);
   EXPECT_EQ(s.sensing.dropout, 0.0);

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "config/error.hpp"
+#include "tests/config/yaml_case.hpp"
 #include "tests/support/same_scenario.hpp"
-#include "yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -73,7 +73,7 @@ TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
 TEST(ToYaml, ConditionsAndFurtherVehiclesReadBack) {
   Scenario scenario = smallest();
   scenario.name = "\"quoted\" \\ # not a comment: {1}";
-  scenario.world = planner::Box{{-10, -10, 0}, {awkward(100), 10, 10}};
+  scenario.world = planner::base::Box{{-10, -10, 0}, {awkward(100), 10, 10}};
   scenario.sensing = {7.0, 19.0, 0.1, awkward(1), 0.3, 0.05};
   scenario.wind = {awkward_vector(1), 0.5, 3.0};
   scenario.estimate = {0.1, 0.2, 0.3, awkward(7)};

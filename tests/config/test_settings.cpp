@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "config/text.hpp"
-#include "yaml_case.hpp"
+#include "tests/config/yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -65,9 +65,9 @@ TEST(LoadSettings, TableHoldsEveryFieldOfEverySection) {
     return static_cast<std::size_t>(std::count_if(
         all.begin(), all.end(), [&](const SettingText& setting) { return setting.key.starts_with(section + "."); }));
   };
-  EXPECT_EQ(count("optimizer"), field_count<planner::OptimizerSettings>());
-  EXPECT_EQ(count("paper"), field_count<planner::PaperSettings>());
-  EXPECT_EQ(count("horizon"), field_count<planner::HorizonSettings>());
+  EXPECT_EQ(count("optimizer"), field_count<planner::base::OptimizerSettings>());
+  EXPECT_EQ(count("paper"), field_count<planner::base::PaperSettings>());
+  EXPECT_EQ(count("horizon"), field_count<planner::base::HorizonSettings>());
   EXPECT_EQ(count("companion"), field_count<CompanionSettings>());
   EXPECT_EQ(field_count<Settings>(), 4U);
 }
@@ -103,7 +103,7 @@ TEST(LoadSettings, AppliesOverridesInOrder) {
   const Settings s = load_settings(kShipped, {"paper.margin=0.2", "paper.constraint=paper", "paper.margin=2e-1",
                                               "horizon.slaves=96", "horizon.population=960", "paper.margin=0.25"});
   EXPECT_EQ(s.paper.margin, 0.25);
-  EXPECT_EQ(s.paper.constraint, planner::Constraint::kPaper);
+  EXPECT_EQ(s.paper.constraint, planner::base::Constraint::kPaper);
   EXPECT_EQ(s.horizon.slaves, 96);  // more than the file's population: only the end result counts
   EXPECT_EQ(s.horizon.population, 960);
 }

@@ -11,7 +11,7 @@
 #include "config/scenario.hpp"
 #include "config/settings.hpp"
 #include "config/vehicle.hpp"
-#include "yaml_case.hpp"
+#include "tests/config/yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -48,8 +48,8 @@ TEST(ShippedFiles, EveryMissionLoadsAndIsNamedAsItsFile) {
 }
 
 TEST(ShippedFiles, ArDroneIsTheDefaultVehicle) {
-  const planner::VehicleLimits file = load_vehicle(kConfig / "vehicles" / "ardrone2.yaml");
-  const planner::VehicleLimits defaults;
+  const planner::base::VehicleLimits file = load_vehicle(kConfig / "vehicles" / "ardrone2.yaml");
+  const planner::base::VehicleLimits defaults;
   EXPECT_EQ(file.radius, defaults.radius);
   EXPECT_EQ(file.length, defaults.length);
   EXPECT_EQ(file.mass, defaults.mass);
@@ -176,7 +176,7 @@ double gap_at(const Scenario& s, const Obstacle& obstacle, const Vec3& vehicle, 
 
 /// The smallest gap between a vehicle that stays at `p` from t = from to t = to and any obstacle.
 double gap_while_still(const Scenario& s, const Vec3& p, double from, double to) {
-  double smallest = planner::kInfinity;
+  double smallest = planner::base::kInfinity;
   for (double t = from; t <= to; t += 0.01) {
     for (const Obstacle& obstacle : s.obstacles) smallest = std::min(smallest, gap_at(s, obstacle, p, t));
   }
@@ -203,7 +203,7 @@ TEST(CrossingScenario, HitsWhoeverFliesStraight) {
   const Scenario s = scenario("crossing");
   EXPECT_EQ(s.obstacles.size(), 8U);
   for (const double speed : {1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0}) {
-    EXPECT_GE(hits_on_straight_line(s, speed, planner::kInfinity), 3U) << speed;
+    EXPECT_GE(hits_on_straight_line(s, speed, planner::base::kInfinity), 3U) << speed;
     EXPECT_GE(hits_on_straight_line(s, speed, s.vehicle.max_acceleration), 3U) << speed << " from rest";
   }
 }
@@ -220,7 +220,7 @@ TEST(CrossingScenario, HasAFreeWayOver) {
   const Scenario s = scenario("crossing");
   const std::vector<Vec3> way = {s.start, {3, 0, 4.5}, {18, 0, 4.5}, s.target};
   double t = 0.0;
-  double smallest = planner::kInfinity;
+  double smallest = planner::base::kInfinity;
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Vec3 leg = way[i] - way[i - 1];
     const double speed = std::min(s.vehicle.cruise_speed, s.vehicle.max_climb * leg.norm() / std::abs(leg.z()));

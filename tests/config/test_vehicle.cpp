@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "yaml_case.hpp"
+#include "tests/config/yaml_case.hpp"
 
 namespace jink::config {
 namespace {
@@ -34,7 +34,7 @@ std::string error_for(const std::string& text) {
 
 TEST(LoadVehicle, ReadsEveryKey) {
   const TempFolder folder;
-  const planner::VehicleLimits v = load_vehicle(folder.write("v.yaml", kValid));
+  const planner::base::VehicleLimits v = load_vehicle(folder.write("v.yaml", kValid));
   EXPECT_EQ(v.radius, 0.25);
   EXPECT_EQ(v.length, 0.5);
   EXPECT_EQ(v.mass, 1.5);
@@ -127,7 +127,7 @@ TEST(LoadVehicle, AcceptsAnAliasInItsPlace) {
   std::string text = kValid;
   text.replace(text.find("0.25"), 4, "&half 0.5");
   text.replace(text.find("length: 0.5"), 11, "length: *half");
-  const planner::VehicleLimits v = load_vehicle(folder.write("v.yaml", text));
+  const planner::base::VehicleLimits v = load_vehicle(folder.write("v.yaml", text));
   EXPECT_EQ(v.radius, 0.5);
   EXPECT_EQ(v.length, 0.5);
 }

@@ -5,7 +5,7 @@
 
 #include "config/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tools/flight_replay.hpp"
+#include "tools/log/flight_replay.hpp"
 #include "tools/report/flight_data.hpp"
 #include "tools/report/report_data.hpp"
 
@@ -16,8 +16,8 @@ using jink::fuzz::require;
 constexpr int kPlanned = 3;
 constexpr std::size_t kMostTracks = 50;
 
-jink::planner::HorizonSettings small() {
-  jink::planner::HorizonSettings settings;
+jink::planner::base::HorizonSettings small() {
+  jink::planner::base::HorizonSettings settings;
   settings.waypoints = 2;
   settings.time = 2.0;
   settings.slaves = 2;
@@ -26,18 +26,18 @@ jink::planner::HorizonSettings small() {
   return settings;
 }
 
-void plan(jink::tools::RecordedPlan& recorded, jink::planner::HorizonPlanner& planner,
-          jink::planner::WorkerPool& pool) {
-  jink::bridge::PlanJob& job = recorded.job;
+void plan(jink::tools::log::RecordedPlan& recorded, jink::planner::horizon::HorizonPlanner& planner,
+          jink::planner::base::WorkerPool& pool) {
+  jink::bridge::companion::PlanJob& job = recorded.job;
   job.request.tracks = job.tracks;
-  const jink::planner::Plan made = planner.plan(job.request, job.previous, 1, job.number, {2}, pool);
-  require(made.path.empty() == (made.status == jink::planner::PlanStatus::kInvalid), "a plan without a path");
+  const jink::planner::verify::Plan made = planner.plan(job.request, job.previous, 1, job.number, {2}, pool);
+  require(made.path.empty() == (made.status == jink::planner::verify::PlanStatus::kInvalid), "a plan without a path");
 }
 
 void replay(const std::filesystem::path& file) {
-  static jink::planner::HorizonPlanner planner(small());
-  static jink::planner::WorkerPool pool(1);
-  jink::tools::FlightRecording recording(file);
+  static jink::planner::horizon::HorizonPlanner planner(small());
+  static jink::planner::base::WorkerPool pool(1);
+  jink::tools::log::FlightRecording recording(file);
   std::vector<std::string> missing;
   try {
     (void)jink::config::recorded_settings(recording.source(), recording.parameters(), {}, missing);
@@ -57,7 +57,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const bool report : {true, false}) {
     try {
       if (report) {
-        (void)jink::tools::report_data(jink::tools::read_flight(file.path()), nullptr);
+        (void)jink::tools::report::report_data(jink::tools::report::read_flight(file.path()), nullptr);
       } else {
         replay(file.path());
       }

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "px4_events/mavlink.h"
-#include "sim/mavlink_endpoint.hpp"
-#include "sim/udp_socket.hpp"
+#include "sim/mavlink/endpoint.hpp"
+#include "sim/mavlink/udp_socket.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -29,16 +29,16 @@ constexpr std::array<std::uint32_t, 14> kMessages = {
 
 class Simulated {
  public:
-  Simulated() : socket_(jink::sim::udp_address("127.0.0.1", 0)), buffer_(65536) {
-    jink::sim::AutopilotOptions vehicle;
+  Simulated() : socket_(jink::sim::mavlink::udp_address("127.0.0.1", 0)), buffer_(65536) {
+    jink::sim::vehicle::AutopilotOptions vehicle;
     vehicle.ready_delay = 0.0;
-    autopilot_ = std::make_unique<jink::sim::Autopilot>(vehicle);
-    jink::sim::EndpointOptions options;
+    autopilot_ = std::make_unique<jink::sim::vehicle::Autopilot>(vehicle);
+    jink::sim::mavlink::EndpointOptions options;
     options.ground_link = false;
     options.companion_local_port = std::uint16_t{0};
     options.companion_remote_port = socket_.local_port();
-    endpoint_ = std::make_unique<jink::sim::MavlinkEndpoint>(*autopilot_, options);
-    to_ = jink::sim::udp_address("127.0.0.1", endpoint_->companion_port());
+    endpoint_ = std::make_unique<jink::sim::mavlink::MavlinkEndpoint>(*autopilot_, options);
+    to_ = jink::sim::mavlink::udp_address("127.0.0.1", endpoint_->companion_port());
   }
 
   void send(std::span<const std::uint8_t> datagram) {
@@ -61,19 +61,19 @@ class Simulated {
   void turn() {
     endpoint_->poll(autopilot_->time());
     autopilot_->step();
-    const jink::sim::Motion& motion = autopilot_->true_motion();
+    const jink::sim::vehicle::Motion& motion = autopilot_->true_motion();
     require(motion.position.allFinite() && motion.velocity.allFinite(), "the vehicle's motion is not finite");
-    jink::sim::UdpAddress from;
+    jink::sim::mavlink::UdpAddress from;
     while (socket_.receive(buffer_, from)) {
     }
   }
 
  private:
-  jink::sim::UdpSocket socket_;
+  jink::sim::mavlink::UdpSocket socket_;
   std::vector<std::uint8_t> buffer_;
-  std::unique_ptr<jink::sim::Autopilot> autopilot_;
-  std::unique_ptr<jink::sim::MavlinkEndpoint> endpoint_;
-  jink::sim::UdpAddress to_;
+  std::unique_ptr<jink::sim::vehicle::Autopilot> autopilot_;
+  std::unique_ptr<jink::sim::mavlink::MavlinkEndpoint> endpoint_;
+  jink::sim::mavlink::UdpAddress to_;
   mavlink_status_t status_{};
 };
 

@@ -3,19 +3,19 @@
 // finite, whatever came in. The input is a sequence of messages: time since the last one (10 ms), length, payload.
 #include <cmath>
 
-#include "bridge/dds_px4_messages.hpp"
+#include "bridge/cdr/px4_messages.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   jink::fuzz::Input input(data, size);
-  jink::bridge::px4::LocalPositionFilter filter;
+  jink::bridge::cdr::px4::LocalPositionFilter filter;
   double now = 10.0;
   while (!input.empty()) {
     now += 0.01 * input.byte();
-    const auto message = jink::bridge::px4::decode_local_position(input.bytes(input.byte()));
+    const auto message = jink::bridge::cdr::px4::decode_local_position(input.bytes(input.byte()));
     if (!message) continue;
     (void)filter.update(*message, now);
-    jink::bridge::VehicleState state;
+    jink::bridge::vehicle::VehicleState state;
     filter.apply(state, now);
     const bool finite = state.position.allFinite() && state.velocity.allFinite() && std::isfinite(state.yaw) &&
                         state.estimate_shift.allFinite();

@@ -8,7 +8,7 @@
 #include "config/error.hpp"
 #include "config/scenario.hpp"
 #include "config/scenario_writer.hpp"
-#include "sim/world.hpp"
+#include "sim/world/world.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -38,7 +38,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     accepted = jink::config::load_scenario(file.path(), JINK_SOURCE_DIR "/config/vehicles");
     const jink::config::Scenario& scenario = *accepted;
-    const jink::sim::World world(scenario);
+    const jink::sim::world::World world(scenario);
     for (const double t : {0.0, 0.004, 7.5}) {
       jink::fuzz::require(!std::isnan(world.clearance(scenario.start, t)), "a clearance is NaN");
     }

@@ -6,23 +6,23 @@
 #include <cmath>
 #include <string_view>
 
-#include "bridge/adsb_tracks.hpp"
-#include "bridge/autopilot_telemetry.hpp"
-#include "bridge/command_tracker.hpp"
-#include "bridge/mavlink_messages.hpp"
-#include "bridge/track_inbox.hpp"
+#include "bridge/mavlink/adsb_tracks.hpp"
+#include "bridge/mavlink/autopilot_telemetry.hpp"
+#include "bridge/mavlink/messages.hpp"
+#include "bridge/tracking/track_inbox.hpp"
+#include "bridge/vehicle/command_tracker.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
 
 namespace mavlink = jink::bridge::mavlink;
-using jink::bridge::AdsbReport;
+using jink::bridge::mavlink::AdsbReport;
 using jink::fuzz::require;
 
 constexpr double kLongestWait_ms = 1e7;
 constexpr std::size_t kLongestNotice = 600;
 
-class TheClock final : public jink::bridge::Clock {
+class TheClock final : public jink::bridge::base::Clock {
  public:
   [[nodiscard]] double now() const override { return now_; }
   void wait(double seconds) { now_ += seconds; }
@@ -39,7 +39,7 @@ class Companion {
  public:
   void take(double wait_ms, std::string_view name, std::string_view json) {
     clock_.wait(1e-3 * wait_ms);
-    if (const auto message = mavlink::decode(name, json)) {
+    if (const auto message = jink::bridge::mavlink::decode(name, json)) {
       std::visit([this](const auto& decoded) { on(decoded); }, *message);
     } else {
       telemetry_.malformed();
@@ -49,21 +49,22 @@ class Companion {
   }
 
  private:
-  void on(const mavlink::Heartbeat& message) { (void)telemetry_.on(clock_.now(), message); }
-  void on(const mavlink::LocalPosition& message) { (void)telemetry_.on(clock_.now(), message); }
-  void on(const mavlink::CommandAck& message) {
-    commands_.start(jink::bridge::Command::kHold, message.command, clock_.now());
+  void on(const jink::bridge::mavlink::Heartbeat& message) { (void)telemetry_.on(clock_.now(), message); }
+  void on(const jink::bridge::mavlink::LocalPosition& message) { (void)telemetry_.on(clock_.now(), message); }
+  void on(const jink::bridge::mavlink::CommandAck& message) {
+    commands_.start(jink::bridge::vehicle::Command::kHold, message.command, clock_.now());
     commands_.acknowledge(message.command, message.result, clock_.now());
     const auto report = commands_.next(clock_.now() + 10.0);
     require(report.has_value() && printable(report->detail), "an answer that is none");
   }
-  void on(const mavlink::ParamValue& message) {
+  void on(const jink::bridge::mavlink::ParamValue& message) {
     for (const bool bytewise : {true, false}) {
-      const auto value = jink::bridge::px4::parameter(message.name, message.type, message.field, bytewise).value;
+      const auto value =
+          jink::bridge::vehicle::px4::parameter(message.name, message.type, message.field, bytewise).value;
       require(!std::isinf(value), "a parameter is infinite");
     }
   }
-  void on(const mavlink::Timesync& /*message*/) {}
+  void on(const jink::bridge::mavlink::Timesync& /*message*/) {}
   void on(const AdsbReport& message) {
     report_ = message;
     report_->received = clock_.now();
@@ -74,12 +75,12 @@ class Companion {
   }
 
   void check_state() {
-    const jink::bridge::VehicleState state = telemetry_.state(clock_.now());
+    const jink::bridge::vehicle::VehicleState state = telemetry_.state(clock_.now());
     const bool finite = state.position.allFinite() && state.velocity.allFinite() && std::isfinite(state.yaw) &&
                         state.estimate_shift.allFinite();
     require(finite, "a state that is not finite");
     // A reset moves the estimate between two believable positions, and a flight has not many.
-    const double most = 2.1 * mavlink::Limits::kPosition * (1.0 + state.estimate_resets);
+    const double most = 2.1 * jink::bridge::mavlink::Limits::kPosition * (1.0 + state.estimate_resets);
     require(state.estimate_shift.norm() <= most, "an absurd shift of the estimate");
     require(!state.local_position_ok || state.position_stamp >= 0.0, "a position that never came");
     require(!state.origin || std::abs(state.origin->latitude_deg) <= 90.0, "an absurd origin");
@@ -92,25 +93,25 @@ class Companion {
   }
 
   void check_aircraft() {
-    jink::bridge::TrackMessage message;
+    jink::bridge::tracking::TrackMessage message;
     while (aircraft_.poll(message)) {
-      for (const jink::planner::Track& track : message.tracks) {
-        require(jink::bridge::refusal(track) == nullptr, "an absurd aircraft");
+      for (const jink::planner::base::Track& track : message.tracks) {
+        require(jink::bridge::tracking::refusal(track) == nullptr, "an absurd aircraft");
       }
     }
   }
 
   TheClock clock_;
-  jink::bridge::AutopilotTelemetry telemetry_;
-  jink::bridge::CommandTracker commands_;
+  jink::bridge::mavlink::AutopilotTelemetry telemetry_;
+  jink::bridge::vehicle::CommandTracker commands_;
   std::optional<AdsbReport> report_;
-  jink::bridge::AdsbTracks aircraft_{[this](AdsbReport& report) {
-                                       if (!report_) return false;
-                                       report = *report_;
-                                       report_.reset();
-                                       return true;
-                                     },
-                                     [this] { return telemetry_.state(clock_.now()).origin; }, clock_};
+  jink::bridge::mavlink::AdsbTracks aircraft_{[this](AdsbReport& report) {
+                                                if (!report_) return false;
+                                                report = *report_;
+                                                report_.reset();
+                                                return true;
+                                              },
+                                              [this] { return telemetry_.state(clock_.now()).origin; }, clock_};
 };
 
 }  // namespace

@@ -4,29 +4,30 @@
 // since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
 #include <cmath>
 
-#include "bridge/dds_track_messages.hpp"
-#include "bridge/track_table.hpp"
+#include "bridge/cdr/track_messages.hpp"
+#include "bridge/tracking/track_table.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
 
-void check(const std::vector<jink::planner::Track>& tracks) {
-  for (const jink::planner::Track& track : tracks) {
+void check(const std::vector<jink::planner::base::Track>& tracks) {
+  for (const jink::planner::base::Track& track : tracks) {
     const bool finite = track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
                         std::isfinite(track.position_sigma) && std::isfinite(track.velocity_sigma) &&
                         std::isfinite(track.age);
     jink::fuzz::require(finite, "a track that is not finite");
-    jink::fuzz::require(track.radius > 0.0 && track.radius <= jink::bridge::TrackLimits::kRadius, "an absurd radius");
+    jink::fuzz::require(track.radius > 0.0 && track.radius <= jink::bridge::tracking::TrackLimits::kRadius,
+                        "an absurd radius");
     jink::fuzz::require(track.age >= 0.0, "a track from the future");
   }
 }
 
-std::optional<jink::bridge::TrackMessage> decode(std::span<const std::uint8_t> payload, bool autoware) {
+std::optional<jink::bridge::tracking::TrackMessage> decode(std::span<const std::uint8_t> payload, bool autoware) {
   if (autoware) {
-    auto message = jink::bridge::decode_tracked_objects(payload);
+    auto message = jink::bridge::cdr::decode_tracked_objects(payload);
     return message ? std::optional(std::move(message->tracks)) : std::nullopt;
   }
-  auto message = jink::bridge::decode_obstacle_tracks(payload);
+  auto message = jink::bridge::cdr::decode_obstacle_tracks(payload);
   return message ? std::optional(std::move(message->tracks)) : std::nullopt;
 }
 
@@ -34,7 +35,7 @@ std::optional<jink::bridge::TrackMessage> decode(std::span<const std::uint8_t> p
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   jink::fuzz::Input input(data, size);
-  jink::bridge::TrackTable table(1.0);
+  jink::bridge::tracking::TrackTable table(1.0);
   double now = 10.0;
   while (!input.empty()) {
     const std::uint64_t writer = input.byte() % 8U;
@@ -44,7 +45,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto payload = input.bytes(low + 256U * input.byte());
     auto message = decode(payload, writer >= 4);
     if (!message) continue;
-    jink::fuzz::require(message->tracks.size() <= jink::bridge::TrackLimits::kTracksPerMessage,
+    jink::fuzz::require(message->tracks.size() <= jink::bridge::tracking::TrackLimits::kTracksPerMessage,
                         "more tracks than a message may have");
     message->writer = writer;
     message->received = now;

@@ -8,7 +8,7 @@
 
 namespace jink::testing_support {
 
-inline void expect_same(const planner::VehicleLimits& a, const planner::VehicleLimits& b) {
+inline void expect_same(const planner::base::VehicleLimits& a, const planner::base::VehicleLimits& b) {
   EXPECT_EQ(a.radius, b.radius);
   EXPECT_EQ(a.length, b.length);
   EXPECT_EQ(a.mass, b.mass);

@@ -17,19 +17,19 @@
 #include <vector>
 
 #include "config/settings.hpp"
-#include "planner/open_loop.hpp"
-#include "planner/worker_pool.hpp"
-#include "sim/closed_loop.hpp"
-#include "sim/known_world.hpp"
-#include "sim/world.hpp"
-#include "sim/world_families.hpp"
-#include "tools/arena/oracle/judge.hpp"
+#include "planner/base/worker_pool.hpp"
+#include "planner/horizon/open_loop.hpp"
+#include "sim/families/families.hpp"
+#include "sim/flight/closed_loop.hpp"
+#include "sim/world/known_world.hpp"
+#include "sim/world/world.hpp"
+#include "tools/lab/oracle/feasibility.hpp"
 
 namespace jink::worlds {
 namespace {
 
-using planner::Plan;
-using planner::PlanStatus;
+using planner::verify::Plan;
+using planner::verify::PlanStatus;
 
 constexpr double kPatience = 30.0;  // s, twice what most need; a world without a flight is planned to the end
 constexpr double kSnap = 0.05;      // m, from the target, where a path may end and be called there
@@ -37,49 +37,49 @@ constexpr double kSnap = 0.05;      // m, from the target, where a path may end 
 /// The world that a planner is asked about: what a perfect sensor tells at t = 0 of each obstacle, its enclosing sphere
 /// with position, velocity and acceleration, is true for ever.
 config::Scenario as_tracked(const config::Scenario& scenario) {
-  const sim::World world(scenario);
+  const sim::world::World world(scenario);
   config::Scenario tracked = scenario;
   tracked.time_limit = std::min(tracked.time_limit, kPatience);
   tracked.obstacles.clear();
   for (int i = 0; i < world.obstacle_count(); ++i) {
-    const planner::Track track = world.exact_track(i, 0.0);
+    const planner::base::Track track = world.exact_track(i, 0.0);
     tracked.obstacles.push_back(
         {config::SphereShape{track.radius}, config::LinearMotion{track.position, track.velocity, track.acceleration}});
   }
   return tracked;
 }
 
-planner::Box volume_of(const config::Scenario& scenario) {
+planner::base::Box volume_of(const config::Scenario& scenario) {
   if (scenario.world) return *scenario.world;
-  planner::Box box;
+  planner::base::Box box;
   box.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
   return box;
 }
 
 /// What `jink plan` does.
-Plan plan(const config::Scenario& scenario, const planner::HorizonSettings& settings = {}) {
-  const sim::KnownWorld known(scenario);
-  planner::WorkerPool pool(1);
-  return planner::plan_open_loop(settings, {}, known.open_loop, 1, {settings.generations}, pool);
+Plan plan(const config::Scenario& scenario, const planner::base::HorizonSettings& settings = {}) {
+  const sim::world::KnownWorld known(scenario);
+  planner::base::WorkerPool pool(1);
+  return planner::horizon::plan_open_loop(settings, {}, known.open_loop, 1, {settings.generations}, pool);
 }
 
-std::vector<TimedPoint> timed(const planner::TimedPath& path) {
-  std::vector<TimedPoint> points;
-  for (const planner::TimedPoint& point : path) points.push_back({point.t, point.position});
+std::vector<tools::lab::oracle::TimedPoint> timed(const planner::base::TimedPath& path) {
+  std::vector<tools::lab::oracle::TimedPoint> points;
+  for (const planner::base::TimedPoint& point : path) points.push_back({point.t, point.position});
   return points;
 }
 
 /// What holds of every path that is planned from rest, wherever it leads.
-void expect_flyable(const config::Scenario& scenario, const planner::TimedPath& path) {
+void expect_flyable(const config::Scenario& scenario, const planner::base::TimedPath& path) {
   ASSERT_FALSE(path.empty());
   EXPECT_EQ(path.front().t, 0.0);
   EXPECT_LT((path.front().position - scenario.start).norm(), 1e-6);
   EXPECT_LT(path.front().velocity.norm(), 1e-6);
-  const std::vector<TimedPoint> points = timed(path);
-  EXPECT_LE(top_speed(points), scenario.vehicle.max_speed + 1e-6);
-  EXPECT_LE(top_climb(points), scenario.vehicle.max_climb + 1e-6);
-  const planner::Box volume = volume_of(scenario);
-  const double most = planner::HorizonSettings{}.emergency_share * scenario.vehicle.max_acceleration;
+  const std::vector<tools::lab::oracle::TimedPoint> points = timed(path);
+  EXPECT_LE(tools::lab::oracle::top_speed(points), scenario.vehicle.max_speed + 1e-6);
+  EXPECT_LE(tools::lab::oracle::top_climb(points), scenario.vehicle.max_climb + 1e-6);
+  const planner::base::Box volume = volume_of(scenario);
+  const double most = planner::base::HorizonSettings{}.emergency_share * scenario.vehicle.max_acceleration;
   for (std::size_t i = 0; i < path.size(); ++i) {
     EXPECT_TRUE(volume.contains(path[i].position, 1e-6)) << path[i].t;
     if (i == 0) continue;
@@ -96,7 +96,7 @@ void expect_flyable(const config::Scenario& scenario, const planner::TimedPath& 
 void expect_true(const config::Scenario& scenario, const Plan& plan) {
   expect_flyable(scenario, plan.path);
   if (plan.status != PlanStatus::kReaches && plan.status != PlanStatus::kProgresses) return;
-  const double clearance = true_clearance(scenario, timed(plan.path));
+  const double clearance = tools::lab::oracle::true_clearance(scenario, timed(plan.path));
   EXPECT_GT(clearance, 0.0);
   EXPECT_NEAR(clearance, plan.verification.min_clearance, 2e-4);
   if (plan.status == PlanStatus::kProgresses) return;
@@ -105,11 +105,11 @@ void expect_true(const config::Scenario& scenario, const Plan& plan) {
   EXPECT_LE(plan.path.back().t, scenario.time_limit);
 }
 
-std::string description(const Flight& flight) {
+std::string description(const tools::lab::oracle::Flight& flight) {
   std::string text = "the judge's flight arrives at " + std::to_string(flight.arrival_time) + " s with " +
                      std::to_string(flight.min_clearance) + " m clear:";
   double next = 0.0;
-  for (const TimedPoint& point : flight.path) {
+  for (const tools::lab::oracle::TimedPoint& point : flight.path) {
     if (point.t < next && &point != &flight.path.back()) continue;
     std::array<char, 80> line{};
     std::snprintf(line.data(), line.size(), "\n  %6.2f s  %7.2f %7.2f %7.2f", point.t, point.position.x(),
@@ -134,18 +134,19 @@ TEST_P(OpenLoop, FindsAPlanWhereverAFlightExists) {
   int solvable = 0;
   int reached = 0;
   for (int seed = 1; seed <= worlds; ++seed) {
-    const config::Scenario scenario = as_tracked(sim::make_world(GetParam(), static_cast<std::uint64_t>(seed)));
+    const config::Scenario scenario =
+        as_tracked(sim::families::make_world(GetParam(), static_cast<std::uint64_t>(seed)));
     SCOPED_TRACE(scenario.name);
-    const Judgement judgement = judge(scenario);
+    const tools::lab::oracle::Judgement judgement = tools::lab::oracle::judge(scenario);
     const Plan found = plan(scenario);
     expect_true(scenario, found);
     const bool reaches = found.status == PlanStatus::kReaches;
-    if (judgement.verdict == Verdict::kSolvable) {
+    if (judgement.verdict == tools::lab::oracle::Verdict::kSolvable) {
       ++solvable;
       reached += reaches ? 1 : 0;
-      EXPECT_TRUE(reaches) << to_string(found.status) << ", but " << description(judgement.flight);
+      EXPECT_TRUE(reaches) << planner::verify::to_string(found.status) << ", but " << description(judgement.flight);
     }
-    EXPECT_FALSE(reaches && judgement.verdict == Verdict::kImpossible);
+    EXPECT_FALSE(reaches && judgement.verdict == tools::lab::oracle::Verdict::kImpossible);
   }
   EXPECT_EQ(solvable, occupied ? 0 : worlds);
   std::printf("%s: %d of %d worlds solvable, %d of these solved\n", name_of(GetParam()).c_str(), solvable, worlds,
@@ -155,9 +156,10 @@ TEST_P(OpenLoop, FindsAPlanWhereverAFlightExists) {
 /// Where an obstacle blocks the line: all but the corridors of the literature, which are the arena's, and the teams,
 /// which nobody plans for at once.
 std::vector<std::string_view> blocked_families() {
-  std::vector<std::string_view> families(sim::world_families().begin(), sim::world_families().end());
+  std::vector<std::string_view> families(sim::families::world_families().begin(),
+                                         sim::families::world_families().end());
   std::erase_if(families, [](std::string_view family) {
-    return !sim::blocks_straight_line(family) || sim::make_world(family, 1).obstacles.empty();
+    return !sim::families::blocks_straight_line(family) || sim::families::make_world(family, 1).obstacles.empty();
   });
   return families;
 }
@@ -169,24 +171,25 @@ INSTANTIATE_TEST_SUITE_P(Worlds, OpenLoop, testing::ValuesIn(blocked_families())
 /// the end. How well it does where obstacles turn is a matter of degree and belongs to the bench.
 std::vector<std::string_view> promised_families() {
   std::vector<std::string_view> families = {"target_occupied"};
-  std::copy_if(sim::world_families().begin(), sim::world_families().end(), std::back_inserter(families),
-               sim::is_linear);
+  std::copy_if(sim::families::world_families().begin(), sim::families::world_families().end(),
+               std::back_inserter(families), sim::families::is_linear);
   return families;
 }
 
-sim::ClosedLoopResult fly(const config::Scenario& scenario, int threads = 1) {
-  sim::ClosedLoopOptions options;
+sim::flight::ClosedLoopResult fly(const config::Scenario& scenario, int threads = 1) {
+  sim::flight::ClosedLoopOptions options;
   options.threads = threads;
-  return sim::fly_closed_loop(scenario, config::load_settings(config::config_folder() / "planner.yaml"), options);
+  return sim::flight::fly_closed_loop(scenario, config::load_settings(config::config_folder() / "planner.yaml"),
+                                      options);
 }
 
 class ClosedLoop : public testing::TestWithParam<std::tuple<std::string_view, int>> {};
 
 TEST_P(ClosedLoop, ReachesTheTarget) {
   const auto [family, seed] = GetParam();
-  const config::Scenario scenario = sim::make_world(family, static_cast<std::uint64_t>(seed));
-  const sim::ClosedLoopResult result = fly(scenario);
-  EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  const config::Scenario scenario = sim::families::make_world(family, static_cast<std::uint64_t>(seed));
+  const sim::flight::ClosedLoopResult result = fly(scenario);
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
@@ -199,8 +202,8 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ClosedLoop,
 // The first of two walls, 111 spheres: whoever only tries ways past the nearest of them never meets the hole that
 // wanders 3 to 5 m aside.
 TEST(ClosedLoop, PassesThroughAWallWithAWanderingHole) {
-  config::Scenario scenario = sim::make_world("walls", 103);
-  const sim::World both(scenario);
+  config::Scenario scenario = sim::families::make_world("walls", 103);
+  const sim::world::World both(scenario);
   std::vector<config::Obstacle> wall;
   for (int i = 0; i < both.obstacle_count(); ++i) {
     if (both.exact_track(i, 0.0).position.x() < 10.0) wall.push_back(scenario.obstacles[static_cast<std::size_t>(i)]);
@@ -208,29 +211,29 @@ TEST(ClosedLoop, PassesThroughAWallWithAWanderingHole) {
   ASSERT_EQ(wall.size(), 111U);
   scenario.obstacles = wall;
   scenario.target.x() = 10.0;
-  const sim::ClosedLoopResult result = fly(scenario);
-  EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  const sim::flight::ClosedLoopResult result = fly(scenario);
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
 // A hole that wanders 4 m aside and 2 m above of a vehicle between wall and wall: to wait is cheaper in every single
 // plan.
 TEST(ClosedLoop, FliesToAHoleFarAsideWhereWaitingDoesNotHelp) {
-  config::Scenario scenario = sim::make_world("walls", 2431836138);
+  config::Scenario scenario = sim::families::make_world("walls", 2431836138);
   scenario.start = {2.2, 13.2, 1.6};
   scenario.time_limit = 60.0;
-  const sim::ClosedLoopResult result = fly(scenario);
-  EXPECT_EQ(result.flight.outcome, bridge::Outcome::kReached) << result.flight.reason;
+  const sim::flight::ClosedLoopResult result = fly(scenario);
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
 class ThreadCount : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(ThreadCount, DoesNotChangeABitOfTheFlight) {
-  config::Scenario scenario = sim::make_world(GetParam(), 1);
+  config::Scenario scenario = sim::families::make_world(GetParam(), 1);
   scenario.time_limit = 4.0;  // enough for a difference to show
-  const sim::ClosedLoopResult one = fly(scenario, 1);
-  const sim::ClosedLoopResult eight = fly(scenario, 8);
+  const sim::flight::ClosedLoopResult one = fly(scenario, 1);
+  const sim::flight::ClosedLoopResult eight = fly(scenario, 8);
   EXPECT_EQ(one.flight.path_length, eight.flight.path_length);
   EXPECT_EQ(one.flight.flight_time, eight.flight.flight_time);
   EXPECT_EQ(one.min_clearance, eight.min_clearance);
@@ -251,7 +254,7 @@ config::Scenario hall(std::vector<config::Obstacle> obstacles) {
   scenario.name = "hall";
   scenario.start = {0, 0, 2};
   scenario.target = {16, 0.3, 2.2};
-  scenario.world = planner::Box{{-1, -3, 0}, {18, 3, 4}};
+  scenario.world = planner::base::Box{{-1, -3, 0}, {18, 3, 4}};
   scenario.time_limit = 20;
   scenario.obstacles = std::move(obstacles);
   return scenario;
@@ -287,11 +290,12 @@ TEST_P(WallWithAHole, IsFlownThroughWhereverItIs) {
   for (const double y : {-2.0, -1.0, 0.0, 1.5, 2.2}) {
     SCOPED_TRACE("hole at y = " + std::to_string(y));
     const config::Scenario scenario = hall(wall(GetParam().radius, y, GetParam().height));
-    const Judgement judgement = judge(scenario);
-    EXPECT_EQ(judgement.verdict, Verdict::kSolvable);
+    const tools::lab::oracle::Judgement judgement = tools::lab::oracle::judge(scenario);
+    EXPECT_EQ(judgement.verdict, tools::lab::oracle::Verdict::kSolvable);
     const Plan found = plan(scenario);
     expect_true(scenario, found);
-    EXPECT_EQ(to_string(found.status), to_string(PlanStatus::kReaches)) << description(judgement.flight);
+    EXPECT_EQ(planner::verify::to_string(found.status), planner::verify::to_string(PlanStatus::kReaches))
+        << description(judgement.flight);
   }
 }
 
@@ -305,9 +309,9 @@ INSTANTIATE_TEST_SUITE_P(Worlds, WallWithAHole,
 
 TEST(NoFlight, PastAClosedWallButToIt) {
   const config::Scenario scenario = hall(wall());
-  ASSERT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  ASSERT_EQ(tools::lab::oracle::judge(scenario).verdict, tools::lab::oracle::Verdict::kImpossible);
   const Plan found = plan(scenario);
-  EXPECT_EQ(to_string(found.status), to_string(PlanStatus::kProgresses));
+  EXPECT_EQ(planner::verify::to_string(found.status), planner::verify::to_string(PlanStatus::kProgresses));
   expect_true(scenario, found);
   ASSERT_FALSE(found.path.empty());
   EXPECT_LT(found.path.back().position.x(), kWallAt - kBallRadius);
@@ -317,9 +321,9 @@ TEST(NoFlight, PastAClosedWallButToIt) {
 TEST(NoFlight, IntoAnOccupiedTargetButNearIt) {
   config::Scenario scenario = hall({});
   scenario.obstacles = {{config::SphereShape{1.0}, config::LinearMotion{scenario.target}}};
-  ASSERT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  ASSERT_EQ(tools::lab::oracle::judge(scenario).verdict, tools::lab::oracle::Verdict::kImpossible);
   const Plan found = plan(scenario);
-  EXPECT_EQ(to_string(found.status), to_string(PlanStatus::kProgresses));
+  EXPECT_EQ(planner::verify::to_string(found.status), planner::verify::to_string(PlanStatus::kProgresses));
   expect_true(scenario, found);
   ASSERT_FALSE(found.path.empty());
   EXPECT_GT(found.path.back().position.x(), 0.5 * scenario.target.x());
@@ -328,13 +332,14 @@ TEST(NoFlight, IntoAnOccupiedTargetButNearIt) {
 TEST(NoFlight, OutOfABlockedStart) {
   const config::Scenario scenario =
       hall({{config::SphereShape{kBallRadius}, config::LinearMotion{{0.7, 0, 2}, {1, 0, 0}}}});
-  ASSERT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  ASSERT_EQ(tools::lab::oracle::judge(scenario).verdict, tools::lab::oracle::Verdict::kImpossible);
   const Plan found = plan(scenario);
-  EXPECT_EQ(to_string(found.status), to_string(PlanStatus::kStartBlocked));
+  EXPECT_EQ(planner::verify::to_string(found.status), planner::verify::to_string(PlanStatus::kStartBlocked));
   EXPECT_FALSE(found.verification.free());
   expect_flyable(scenario, found.path);
   EXPECT_EQ(found.path.size(), 1U);
-  EXPECT_EQ(to_string(fly(scenario).flight.outcome), to_string(bridge::Outcome::kStartBlocked));
+  EXPECT_EQ(bridge::supervisor::to_string(fly(scenario).flight.outcome),
+            bridge::supervisor::to_string(bridge::supervisor::Outcome::kStartBlocked));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "tools/report/crc32.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 constexpr double kMillimetres = 25.4;     // of an inch
@@ -155,4 +155,4 @@ std::string Canvas::png() {
   return bytes.insert(kAfterHeader, resolution_chunk(dpi_));
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

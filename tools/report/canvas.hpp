@@ -12,7 +12,7 @@
 struct _cairo;
 struct _cairo_surface;
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// On the sheet, mm: x to the right, y down.
 using Spot = std::array<double, 2>;
@@ -71,4 +71,4 @@ class Canvas {
   std::unique_ptr<_cairo, void (*)(_cairo*)> cairo_;
 };
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

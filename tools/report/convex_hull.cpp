@@ -7,10 +7,9 @@
 #include <set>
 #include <utility>
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
-using planner::Vec3;
 using Points = std::span<const Vec3>;
 
 constexpr double kFlat = 1e-9;  // of the set's size
@@ -104,4 +103,4 @@ std::vector<Triangle> convex_hull(Points points) {
   return faces;
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

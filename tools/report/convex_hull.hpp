@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "planner/types.hpp"
+#include "planner/base/types.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 using Triangle = std::array<std::size_t, 3>;
 
@@ -17,6 +17,6 @@ using Triangle = std::array<std::size_t, 3>;
 /// outside. Of points in one plane both faces; of points on one line one triangle whose last two corners are the same,
 /// of a single point one with all three the same: whoever draws edges and corners misses nothing. Requires at least one
 /// point, all finite. Points within 1e-9 of the set's size of a face are taken as on it. O(n f) for f faces.
-std::vector<Triangle> convex_hull(std::span<const planner::Vec3> points);
+std::vector<Triangle> convex_hull(std::span<const Vec3> points);
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// CRC-32 (ISO-HDLC: reflected 0x04C11DB7, all ones in and out), continued from `crc`; 0 to begin.
 [[nodiscard]] constexpr std::uint32_t crc32(std::string_view bytes, std::uint32_t crc = 0) {
@@ -24,4 +24,4 @@ namespace jink::tools {
   return ~crc;
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

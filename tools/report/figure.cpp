@@ -7,7 +7,7 @@
 
 #include "tools/report/figure_parts.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 // mm
@@ -93,4 +93,4 @@ ReportResult write_figure(const ReportSource& source, const std::filesystem::pat
   return {data.lines, data.cut_off + data.not_finite + data.unknown};
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "tools/report/report.hpp"
+#include "tools/report/html_report.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// The figure's width; its height follows from the flight's proportions.
 constexpr double kFigureWidth_mm = 180.0;
@@ -28,4 +28,4 @@ struct FigureColors {
 ReportResult write_figure(const ReportSource& source, const std::filesystem::path& file,
                           std::optional<double> at = std::nullopt);
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

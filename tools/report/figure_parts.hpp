@@ -11,7 +11,7 @@
 #include "tools/report/flight_data.hpp"
 #include "tools/report/report_data.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// A flight, and the instant of it that the figure shows.
 struct FigureFlight {
@@ -53,4 +53,4 @@ void draw_legend(Canvas& canvas, const FigureFlight& flight, const Spot& at, dou
 /// Clearance, speed, height and plan time under each other, `frame` for all four and their time axis.
 void draw_plots(Canvas& canvas, const FigureFlight& flight, const Frame& frame);
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -5,10 +5,10 @@
 #include <functional>
 #include <limits>
 
-#include "tools/report/event_tone.hpp"
+#include "tools/report/event_severity.hpp"
 #include "tools/report/figure_parts.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 constexpr double kGap = 3.0;         // mm, between panels
@@ -219,4 +219,4 @@ void draw_plots(Canvas& canvas, const FigureFlight& flight, const Frame& frame) 
   canvas.text({frame.x + 0.5 * frame.width, bottom + 5.8}, "time, s", {.size = 2.5, .align = Align::kCentre});
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <variant>
 
-#include "planner/obstacle_motion.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
 #include "tools/report/figure_parts.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 constexpr double kPad = 2.0;         // m, before and behind the flown way
@@ -33,10 +33,10 @@ struct View {
   }
 };
 
-Triple triple(const planner::Vec3& v) {
+Triple triple(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
-planner::Vec3 vector(const Triple& v) {
+Vec3 vector(const Triple& v) {
   return {v[0], v[1], v[2]};
 }
 
@@ -84,16 +84,14 @@ void draw_obstacle(Canvas& canvas, const View& view, const FlightData& flight, c
     return;
   }
   std::vector<Spot> corners;
-  const auto add = [&](const planner::Vec3& corner) {
-    corners.push_back(view.spot(triple(vector(body.position) + corner)));
-  };
+  const auto add = [&](const Vec3& corner) { corners.push_back(view.spot(triple(vector(body.position) + corner))); };
   if (const auto* box = std::get_if<config::BoxShape>(&shape->second)) {
     for (const unsigned i : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
-      const planner::Vec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
+      const Vec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
       add(side.cwiseProduct(box->edges));
     }
   } else if (const auto* hull = std::get_if<config::VertexShape>(&shape->second)) {
-    for (const planner::Vec3& vertex : hull->vertices) add(vertex);
+    for (const Vec3& vertex : hull->vertices) add(vertex);
   }
   canvas.polygon(outline(std::move(corners)), FigureColors::kObstacle, 1.0, edge);
 }
@@ -116,14 +114,14 @@ void draw_tracks(Canvas& canvas, const View& view, const FigureFlight& flight) {
   const double trust = plan == nullptr ? 0.0 : plan->acceleration_trust;
   const Pen pen{.color = FigureColors::kTrack, .width = 0.35, .dash = {1.0, 0.7}};
   for (const Body& body : frame->bodies) {
-    const planner::Track track{.position = vector(body.position),
-                               .velocity = vector(body.velocity),
-                               .acceleration = vector(body.acceleration),
-                               .radius = body.radius,
-                               .age = body.age};
+    const planner::base::Track track{.position = vector(body.position),
+                                     .velocity = vector(body.velocity),
+                                     .acceleration = vector(body.acceleration),
+                                     .radius = body.radius,
+                                     .age = body.age};
     std::vector<Spot> ahead;
     for (double s = 0.0; s <= kTrail; s += kAheadStep)
-      ahead.push_back(view.spot(triple(predict_position(track, s, trust))));
+      ahead.push_back(view.spot(triple(planner::geometry::predict_position(track, s, trust))));
     canvas.line(ahead, pen);
     if (flight.data.obstacles.empty()) {  // all that is known of them
       const double radius = body.radius * view.scale.scale;
@@ -326,4 +324,4 @@ void draw_legend(Canvas& canvas, const FigureFlight& flight, const Spot& at, dou
   }
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

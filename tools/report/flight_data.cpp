@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/report/log_lines.hpp"
+#include "tools/log/log_reader.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 using Json = nlohmann::json;
@@ -17,17 +17,17 @@ using Json = nlohmann::json;
 }
 
 Triple triple_of(const Json& record, const char* key) {
-  return numbers<3>(member(record, key), key);
+  return log::numbers<3>(log::member(record, key), key);
 }
 
 Body body_of(const Json& record, bool moving) {
-  const Json& id = member(record, "id");
+  const Json& id = log::member(record, "id");
   if (!id.is_number_integer()) refuse("\"id\" is not a whole number");
-  Body body{id.get<std::uint64_t>(), triple_of(record, "p"), {}, number_of(record, "radius")};
+  Body body{id.get<std::uint64_t>(), triple_of(record, "p"), {}, log::number_of(record, "radius")};
   if (!moving) return body;
   body.velocity = triple_of(record, "v");
   if (record.contains("a")) body.acceleration = triple_of(record, "a");
-  if (record.contains("age")) body.age = number_of(record, "age");
+  if (record.contains("age")) body.age = log::number_of(record, "age");
   return body;
 }
 
@@ -38,7 +38,7 @@ constexpr std::size_t kMostVertices = 10000;
 constexpr std::size_t kMostVehicles = 100;
 
 Triple bounded(const Json& value, const char* key, double low, double high) {
-  const Triple v = numbers<3>(value, key);
+  const Triple v = log::numbers<3>(value, key);
   for (const double x : v) {
     if (!(x >= low && x <= high)) refuse("\"" + std::string(key) + "\" is out of range");
   }
@@ -51,7 +51,7 @@ config::Shape shape_of(const Json& record) {
     return config::BoxShape{{e[0], e[1], e[2]}};
   }
   config::VertexShape hull;
-  const Json& list = list_of(record, "vertices");
+  const Json& list = log::list_of(record, "vertices");
   if (list.empty() || list.size() > kMostVertices) refuse("\"vertices\" is not a list of 1 to 10000 points");
   for (const Json& vertex : list) {
     const Triple v = bounded(vertex, "vertices", -kFarthest, kFarthest);
@@ -63,9 +63,9 @@ config::Shape shape_of(const Json& record) {
 std::map<std::uint64_t, config::Shape> shapes_of(const Json& header) {
   std::map<std::uint64_t, config::Shape> shapes;
   if (!header.contains("shapes")) return shapes;
-  for (const Json& record : list_of(header, "shapes")) {
+  for (const Json& record : log::list_of(header, "shapes")) {
     if (!record.is_object()) refuse("\"shapes\" holds what is no object");
-    shapes[count_of(record, "id")] = shape_of(record);
+    shapes[log::count_of(record, "id")] = shape_of(record);
   }
   return shapes;
 }
@@ -75,15 +75,15 @@ void add_inputs(PlanRecord& plan, const Json& record) {
   const auto from = record.find("from");
   if (from == record.end() || !from->is_object()) return;
   if (from->contains("acceleration_trust"))
-    plan.acceleration_trust = exact(member(*from, "acceleration_trust"), "acceleration_trust");
+    plan.acceleration_trust = log::exact(log::member(*from, "acceleration_trust"), "acceleration_trust");
   if (!from->contains("paths")) return;
-  const double start = number_of(*from, "start");
-  for (const Json& path : list_of(*from, "paths")) {
-    KnownPathRecord known{count_of(path, "id"), exact(member(path, "radius"), "radius"), {}};
-    const double offset = exact(member(path, "offset"), "offset");
+  const double start = log::number_of(*from, "start");
+  for (const Json& path : log::list_of(*from, "paths")) {
+    KnownPathRecord known{log::count_of(path, "id"), log::exact(log::member(path, "radius"), "radius"), {}};
+    const double offset = log::exact(log::member(path, "offset"), "offset");
     bool finite = std::isfinite(known.radius);
-    for (const Json& item : list_of(path, "points")) {
-      auto point = exact_numbers<4>(item, "points");
+    for (const Json& item : log::list_of(path, "points")) {
+      auto point = log::exact_numbers<4>(item, "points");
       point[0] += start - offset;
       finite = finite && std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
       known.points.push_back(point);
@@ -98,9 +98,9 @@ class Reader {
   explicit Reader(FlightData& flight) : data_(flight) {}
 
   void take(const Json& record) {
-    const std::string type = text_of(record, "type");
+    const std::string type = log::text_of(record, "type");
     try {
-      const double t = number_of(record, "t");
+      const double t = log::number_of(record, "t");
       if (!add(type, t, record)) {
         ++data_.unknown;
         return;
@@ -108,7 +108,7 @@ class Reader {
       data_.first = any_ ? std::min(data_.first, t) : t;
       data_.last = any_ ? std::max(data_.last, t) : t;
       any_ = true;
-    } catch (const NotFinite&) {
+    } catch (const log::NotFinite&) {
       ++data_.not_finite;
     } catch (const std::invalid_argument& error) {
       refuse(type + " " + error.what());
@@ -119,7 +119,7 @@ class Reader {
   bool add(const std::string& type, double t, const Json& record) {
     if (type == "truth") {
       const MotionSample sample{t, triple_of(record, "p"), triple_of(record, "v")};
-      const std::uint64_t number = record.contains("vehicle") ? count_of(record, "vehicle") : 0;
+      const std::uint64_t number = record.contains("vehicle") ? log::count_of(record, "vehicle") : 0;
       (number == 0 ? data_.truth : other(number)).push_back(sample);
     } else if (type == "obstacles") {
       const Body body = body_of(record, false);
@@ -130,22 +130,22 @@ class Reader {
       note_mode(t, record);
     } else if (type == "tracks") {
       BodyFrame frame{t, {}};
-      for (const Json& track : list_of(record, "tracks")) frame.bodies.push_back(body_of(track, true));
+      for (const Json& track : log::list_of(record, "tracks")) frame.bodies.push_back(body_of(track, true));
       data_.tracks.push_back(std::move(frame));
     } else if (type == "plan") {
       PlanRecord plan;
       plan.t = t;
-      plan.ms = number_of(record, "ms");
-      plan.status = text_of(record, "status");
-      plan.kept = flag_of(record, "kept");
-      plan.missed = flag_of(record, "missed");
-      for (const Json& point : list_of(record, "path")) plan.path.push_back(numbers<4>(point, "path"));
+      plan.ms = log::number_of(record, "ms");
+      plan.status = log::text_of(record, "status");
+      plan.kept = log::flag_of(record, "kept");
+      plan.missed = log::flag_of(record, "missed");
+      for (const Json& point : log::list_of(record, "path")) plan.path.push_back(log::numbers<4>(point, "path"));
       add_inputs(plan, record);
       data_.plans.push_back(std::move(plan));
     } else if (type == "setpoint") {
       data_.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
     } else if (type == "event") {
-      data_.events.push_back({t, text_of(record, "name"), text_of(record, "detail")});
+      data_.events.push_back({t, log::text_of(record, "name"), log::text_of(record, "detail")});
     } else {
       return false;
     }
@@ -161,7 +161,7 @@ class Reader {
   }
 
   void note_mode(double t, const Json& record) {
-    std::string mode = text_of(record, "mode") + (flag_of(record, "armed") ? ", armed" : ", disarmed");
+    std::string mode = log::text_of(record, "mode") + (log::flag_of(record, "armed") ? ", armed" : ", disarmed");
     if (mode == mode_) return;
     data_.events.push_back({t, "mode", mode});
     mode_ = std::move(mode);
@@ -188,12 +188,12 @@ std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t num
 }
 
 FlightData read_flight(const std::filesystem::path& log) {
-  LogLines lines(log);
+  log::LogLines lines(log);
   FlightData flight;
   flight.header = lines.header();
   try {
     flight.shapes = shapes_of(flight.header);
-  } catch (const NotFinite&) {
+  } catch (const log::NotFinite&) {
     lines.fail("header \"shapes\" holds a number that is not finite");
   } catch (const std::invalid_argument& error) {
     lines.fail(std::string("header ") + error.what());
@@ -211,4 +211,4 @@ FlightData read_flight(const std::filesystem::path& log) {
   return flight;
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

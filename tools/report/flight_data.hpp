@@ -15,7 +15,7 @@
 
 #include "config/scenario.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// x, y, z in ENU; m or m/s.
 using Triple = std::array<double, 3>;
@@ -97,4 +97,4 @@ struct FlightData {
 /// is not jink-log/1; only the last line may be cut off. Linear in the log's size, which is held in memory.
 FlightData read_flight(const std::filesystem::path& log);
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <variant>
 
-#include "sim/shapes.hpp"
+#include "sim/world/shapes.hpp"
 #include "tools/report/convex_hull.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 namespace {
 
 using Json = nlohmann::json;
@@ -125,7 +125,7 @@ Json shapes_json(const std::map<std::uint64_t, config::Shape>& shapes) {
     if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
       entry["box"] = {millimetres(box->edges.x()), millimetres(box->edges.y()), millimetres(box->edges.z())};
     } else if (const auto* hull = std::get_if<config::VertexShape>(&shape)) {
-      for (const planner::Vec3& v : hull->vertices) append(entry["vertices"], {v.x(), v.y(), v.z()});
+      for (const Vec3& v : hull->vertices) append(entry["vertices"], {v.x(), v.y(), v.z()});
       entry["faces"] = Json::array();
       for (const Triangle& face : convex_hull(hull->vertices)) {
         for (const std::size_t corner : face) entry["faces"].push_back(corner);
@@ -170,8 +170,8 @@ std::optional<double> nearest_track(const Triple& vehicle, double radius, const 
 double surface_distance(const FlightData& flight, const Body& body, const Triple& from) {
   const auto shape = flight.shapes.find(body.id);
   if (shape == flight.shapes.end()) return distance(from, body.position) - body.radius;
-  const auto vector = [](const Triple& v) { return planner::Vec3(v[0], v[1], v[2]); };
-  return sim::distance(shape->second, vector(body.position), vector(from));
+  const auto vector = [](const Triple& v) { return Vec3(v[0], v[1], v[2]); };
+  return sim::world::distance(shape->second, vector(body.position), vector(from));
 }
 
 const std::vector<MotionSample>& truth_of(const FlightData& flight, std::size_t vehicle) {
@@ -332,4 +332,4 @@ Json report_data(const FlightData& flight, const Json* summary) {
   return data;
 }
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

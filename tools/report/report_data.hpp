@@ -9,7 +9,7 @@
 
 #include "tools/report/flight_data.hpp"
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// Distance between the vehicle's surface (its centre, where the log tells no radius) and the nearest obstacle's
 /// surface.
@@ -34,4 +34,4 @@ std::vector<ClearanceSample> tracked_clearance(const FlightData& flight);
 /// The page's data. `summary` may be null. Keys: see the viewer's data.js.
 nlohmann::json report_data(const FlightData& flight, const nlohmann::json* summary);
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

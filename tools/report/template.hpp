@@ -5,9 +5,9 @@
 
 #include <string_view>
 
-namespace jink::tools {
+namespace jink::tools::report {
 
 /// HTML with one "{{data}}", where the flight's data go as JSON. Valid for the program's life.
 std::string_view report_template();
 
-}  // namespace jink::tools
+}  // namespace jink::tools::report

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/cdr/track_messages.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bridge/cdr/input.hpp"
+#include "bridge/frames/conversions.hpp"
+
+namespace jink::bridge::cdr {
+
+namespace {
+
+using planner::base::Track;
+
+constexpr std::size_t kWireTrack_bytes = 8 + 9 * 8 + 3 * 8;
+
+// In the order of the IDL.
+Track take_track(CdrInput& input, bool ned) {
+  Track track;
+  track.id = input.take<std::uint64_t>();
+  track.position = take_vec3(input);
+  track.velocity = take_vec3(input);
+  track.acceleration = take_vec3(input);
+  if (ned) {
+    track.position = frames::enu_from_ned(track.position);
+    track.velocity = frames::enu_from_ned(track.velocity);
+    track.acceleration = frames::enu_from_ned(track.acceleration);
+  }
+  track.radius = input.take<double>();
+  track.position_sigma = input.take<double>();
+  track.velocity_sigma = input.take<double>();
+  return track;
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// At the least, without classification and footprint: what a stated number of objects is checked against.
+constexpr std::size_t kObject_bytes = 16 + 4 + 4 + (7 + 36 + 6 + 36 + 6 + 36) * 8 + 2 + 1 + 4 + 3 * 8;
+constexpr std::size_t kClassification_bytes = 5;
+constexpr std::size_t kPoint32_bytes = 12;
+
+// A variance (m^2, m^2/s^2) beyond which a writer says that it knows nothing in that direction.
+constexpr double kNoInformation = 1e4;
+
+enum class ShapeType : std::uint8_t { kBoundingBox = 0, kCylinder = 1, kPolygon = 2 };
+constexpr std::uint8_t kOrientationUnavailable = 0;
+
+Eigen::Quaterniond take_quaternion(CdrInput& input) {
+  const Vec3 vec = take_vec3(input);
+  const auto w = input.take<double>();
+  return {w, vec.x(), vec.y(), vec.z()};
+}
+
+// The largest standard deviation in any direction of the upper left block of a 6 x 6 covariance: that of position or
+// linear velocity. 0 where the writer marks it as unknown; NaN where it is none.
+double take_sigma(CdrInput& input) {
+  std::array<double, 36> values{};
+  for (double& value : values) value = input.take<double>();
+  Eigen::Matrix3d block;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 3; ++column) {
+      block(row, column) = values[static_cast<std::size_t>(6 * row + column)];
+    }
+  }
+  if (block(0, 0) == -1.0) return 0.0;
+  if (!block.allFinite()) return kNaN;
+  const Eigen::Matrix3d symmetric = 0.5 * (block + block.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
+  double largest = 0.0;
+  for (const double variance : solver.eigenvalues()) {
+    if (variance < kNoInformation) largest = std::max(largest, variance);
+  }
+  return std::sqrt(largest);
+}
+
+double take_radius(CdrInput& input) {
+  const auto type = static_cast<ShapeType>(input.take<std::uint8_t>());
+  double footprint = 0.0;  // its farthest point from the object's centre
+  bool finite = true;
+  for (std::uint32_t points = input.take_length(kPoint32_bytes); points > 0; --points) {
+    const auto x = static_cast<double>(input.take<float>());
+    const auto y = static_cast<double>(input.take<float>());
+    input.take<float>();
+    const double distance = std::hypot(x, y);
+    footprint = std::max(footprint, distance);
+    finite = finite && std::isfinite(distance);
+  }
+  const Vec3 size = take_vec3(input);
+  if (!finite || !size.allFinite() || size.minCoeff() < 0.0) return kNaN;
+  switch (type) {
+    case ShapeType::kBoundingBox:
+      return 0.5 * size.norm();
+    case ShapeType::kCylinder:  // x and y are its diameter
+      return 0.5 * std::hypot(std::max(size.x(), size.y()), size.z());
+    case ShapeType::kPolygon:
+      return footprint > 0.0 ? std::hypot(footprint, 0.5 * size.z()) : 0.5 * size.norm();
+  }
+  return kNaN;
+}
+
+// The rotation from the object's frame to the map; of NaN where there is no telling.
+Eigen::Matrix3d rotation(const Eigen::Quaterniond& orientation, bool available) {
+  const double norm = orientation.norm();
+  if (norm == 0.0 && !available) return Eigen::Matrix3d::Identity();
+  if (!(norm > 0.5 && norm < 2.0)) return Eigen::Matrix3d::Constant(kNaN);
+  return orientation.normalized().toRotationMatrix();
+}
+
+Track take_object(CdrInput& input) {
+  Track track;
+  std::array<std::uint8_t, 16> uuid{};
+  for (auto& byte : uuid) byte = input.take<std::uint8_t>();
+  track.id = fnv1a(uuid);
+  input.take<float>();  // existence_probability
+  for (std::uint32_t labels = input.take_length(kClassification_bytes); labels > 0; --labels) {
+    input.take<std::uint8_t>();
+    input.take<float>();
+  }
+  track.position = take_vec3(input);
+  const Eigen::Quaterniond orientation = take_quaternion(input);
+  track.position_sigma = take_sigma(input);
+  const Vec3 velocity = take_vec3(input);
+  take_vec3(input);  // angular
+  track.velocity_sigma = take_sigma(input);
+  const Vec3 acceleration = take_vec3(input);
+  take_vec3(input);  // angular
+  for (int i = 0; i < 36; ++i) input.take<double>();
+  const bool available = input.take<std::uint8_t>() != kOrientationUnavailable;
+  input.take<bool>();  // is_stationary
+  const Eigen::Matrix3d to_map = rotation(orientation, available);
+  track.velocity = to_map * velocity;
+  track.acceleration = to_map * acceleration;
+  track.radius = take_radius(input);
+  return track;
+}
+
+}  // namespace
+
+std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
+  tracking::DecodedTracks message;
+  const bool whole = decode(payload, [&](CdrInput& input) {
+    const StampedFrame header = take_header(input);
+    message.frame_id = header.frame_id;
+    message.stamp_unix_s = header.stamp_unix_s;
+    const std::uint32_t count = input.take_length(kWireTrack_bytes);
+    tracking::TrackSieve sieve(message.tracks, count);
+    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
+    message.why = sieve.why();
+    return true;
+  });
+  return whole ? std::optional(std::move(message)) : std::nullopt;
+}
+
+std::optional<tracking::DecodedTracks> decode_tracked_objects(std::span<const std::uint8_t> payload) {
+  tracking::DecodedTracks message;
+  const bool whole = decode(payload, [&](CdrInput& input) {
+    const StampedFrame header = take_header(input);
+    message.frame_id = header.frame_id;
+    message.stamp_unix_s = header.stamp_unix_s;
+    const std::uint32_t count = input.take_length(kObject_bytes);
+    tracking::TrackSieve sieve(message.tracks, count);
+    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_object(input));
+    message.why = sieve.why();
+    return true;
+  });
+  return whole ? std::optional(std::move(message)) : std::nullopt;
+}
+
+}  // namespace jink::bridge::cdr

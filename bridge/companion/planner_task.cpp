@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/companion/planner_task.hpp"
+
+#include <cassert>
+#include <chrono>
+#include <utility>
+
+namespace jink::bridge::companion {
+
+ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Wake* done)
+    : settings_(settings),
+      clock_(clock),
+      done_(done),
+      planner_(settings.horizon, settings.optimizer),
+      pool_(settings.threads),
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+ThreadedPlanner::~ThreadedPlanner() {
+  thread_.request_stop();
+  wake_.notify_all();
+}
+
+void ThreadedPlanner::start(PlanJob job) {
+  {
+    const std::scoped_lock lock(mutex_);
+    assert(!busy_);
+    job_ = std::move(job);
+    busy_ = true;
+  }
+  wake_.notify_all();
+}
+
+bool ThreadedPlanner::busy() const {
+  const std::scoped_lock lock(mutex_);
+  return busy_;
+}
+
+std::optional<PlanResult> ThreadedPlanner::poll(double now) {
+  const std::scoped_lock lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (!result_) return std::nullopt;
+  busy_ = false;
+  std::optional<PlanResult> result = std::exchange(result_, std::nullopt);
+  result->missed = now > result->job.start;
+  return result;
+}
+
+void ThreadedPlanner::work(const std::stop_token& stop) {
+  while (true) {
+    PlanResult result;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [&] { return job_.has_value(); })) return;
+      result.job = std::move(*job_);
+      job_.reset();
+    }
+    try {
+      const double begun = clock_.now();
+      const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
+      const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
+      const planner::base::Budget budget{
+          settings_.horizon.generations,
+          std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(deadline)};
+      result.plan =
+          planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+      forget_obstacles(result.job);
+      result.ms = 1e3 * (clock_.now() - begun);
+      const std::scoped_lock lock(mutex_);
+      result_ = std::move(result);
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      failure_ = std::current_exception();
+    }
+    if (done_ != nullptr) done_->notify();
+  }
+}
+
+VirtualPlanner::VirtualPlanner(const PlannerTaskSettings& settings, double latency)
+    : settings_(settings), latency_(latency), planner_(settings.horizon, settings.optimizer), pool_(settings.threads) {}
+
+void VirtualPlanner::start(PlanJob job) {
+  assert(!result_);
+  PlanResult& result = result_.emplace();
+  result.job = std::move(job);
+  const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
+  const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
+  result.plan =
+      planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
+  forget_obstacles(result.job);
+  result.ms = 1e3 * latency_;
+}
+
+std::optional<PlanResult> VirtualPlanner::poll(double now) {
+  if (!result_ || now + 1e-9 < result_->job.begun + latency_) return std::nullopt;
+  std::optional<PlanResult> result = std::exchange(result_, std::nullopt);
+  result->missed = now > result->job.start + 1e-9;
+  return result;
+}
+
+}  // namespace jink::bridge::companion

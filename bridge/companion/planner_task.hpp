@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A planner that works while the setpoints go on. Two implementations: a thread, and virtual time.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "bridge/base/clock.hpp"
+#include "bridge/base/notifier.hpp"
+#include "bridge/prediction/forecast.hpp"
+#include "planner/horizon/horizon_planner.hpp"
+
+namespace jink::bridge::companion {
+
+/// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
+struct PlanJob {
+  planner::horizon::PathRequest request;  ///< `tracks` and `paths` are set by the task to what follows from the below
+  std::vector<planner::base::Track> tracks;
+  std::vector<prediction::Forecast> forecasts;      ///< of some of the tracks
+  std::vector<planner::geometry::KnownPath> paths;  ///< of the team's other vehicles
+  planner::base::TimedPath previous;                ///< times from `start` on
+  std::uint64_t number = 0;
+  double begun = 0.0;
+  double start = 0.0;
+  double newest_track = -1.0;          ///< reception of the newest track message that went in; negative: none
+  double waited = 0.0;                 ///< s, SetpointStream::waited() that the request was made with
+  Vec3 estimate_shift = Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
+};
+
+struct PlanResult {
+  planner::verify::Plan plan;  ///< path times from `job.start` on
+  PlanJob job;
+  double ms = 0.0;      ///< spent planning: wall time, or the configured latency in virtual time
+  bool missed = false;  ///< it came after its own start
+};
+
+/// What the job's plan is to avoid up to that planner's horizon. The request refers to it, until forget_obstacles().
+[[nodiscard]] inline prediction::Obstacles set_obstacles(PlanJob& job, const planner::base::HorizonSettings& settings) {
+  prediction::Obstacles obstacles =
+      prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+  job.request.tracks = obstacles.tracks;
+  job.request.paths = obstacles.paths;
+  return obstacles;
+}
+inline void forget_obstacles(PlanJob& job) {
+  job.request.tracks = {};
+  job.request.paths = {};
+}
+
+/// One job at a time.
+class PlannerTask {
+ public:
+  virtual ~PlannerTask() = default;
+  /// Precondition: not busy.
+  virtual void start(PlanJob job) = 0;
+  [[nodiscard]] virtual bool busy() const = 0;
+  /// How long after its beginning a plan can be expected; its path starts then.
+  [[nodiscard]] virtual double latency() const = 0;
+  /// The finished plan, once; nothing while the planner works. Throws what the planner threw.
+  [[nodiscard]] virtual std::optional<PlanResult> poll(double now) = 0;
+};
+
+struct PlannerTaskSettings {
+  planner::base::HorizonSettings horizon;
+  planner::base::OptimizerSettings optimizer;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one for each core
+};
+
+/// Plans in a thread of its own with a pool of `threads`, until the generations are done or the deadline passes.
+class ThreadedPlanner final : public PlannerTask {
+ public:
+  /// `done`, where there is one, is notified when a plan is ready; it outlives the planner.
+  ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Wake* done = nullptr);
+  ~ThreadedPlanner() override;
+  void start(PlanJob job) override;
+  [[nodiscard]] bool busy() const override;
+  [[nodiscard]] double latency() const override { return 1e-3 * settings_.horizon.deadline_ms + kHandling; }
+  [[nodiscard]] std::optional<PlanResult> poll(double now) override;
+
+ private:
+  static constexpr double kHandling = 0.03;  // s: the last cycle after the deadline, and a turn of the loop
+  void work(const std::stop_token& stop);
+
+  PlannerTaskSettings settings_;
+  const base::Clock& clock_;
+  base::Wake* done_;
+  planner::horizon::HorizonPlanner planner_;
+  planner::base::WorkerPool pool_;
+  mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_
+  std::condition_variable_any wake_;
+  std::optional<PlanJob> job_;
+  std::optional<PlanResult> result_;
+  std::exception_ptr failure_;
+  bool busy_ = false;
+  std::jthread thread_;
+};
+
+/// Plans at once and hands the plan out `latency` later. The budget is the generations: the wall clock has no say.
+class VirtualPlanner final : public PlannerTask {
+ public:
+  VirtualPlanner(const PlannerTaskSettings& settings, double latency);
+  void start(PlanJob job) override;
+  [[nodiscard]] bool busy() const override { return result_.has_value(); }
+  [[nodiscard]] double latency() const override { return latency_; }
+  [[nodiscard]] std::optional<PlanResult> poll(double now) override;
+
+ private:
+  PlannerTaskSettings settings_;
+  double latency_;
+  planner::horizon::HorizonPlanner planner_;
+  planner::base::WorkerPool pool_;
+  std::optional<PlanResult> result_;
+};
+
+}  // namespace jink::bridge::companion

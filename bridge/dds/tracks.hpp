@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Obstacle tracks over DDS, by Fast DDS: what the companion reads, and what the simulator and tools write. The type on
+// the wire is ROS 2's (bridge/idl), so that a ROS node, or any other DDS program, can stand at either end.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "bridge/base/clock.hpp"
+#include "bridge/dds/participant.hpp"
+#include "bridge/tracking/track_inbox.hpp"
+
+namespace jink::bridge::dds {
+
+inline constexpr const char* kTracksTopic = "rt/jink/obstacle_tracks";  ///< ROS 2: /jink/obstacle_tracks
+inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks_";
+
+/// Reads the topic best effort, volatile, keep last, so that a writer of any reliability and durability matches; by
+/// the node's transports. Messages are checked and converted to ENU on Fast DDS's
+/// thread and queued; when nobody polls, the oldest go. All functions are safe from any thread and never block.
+///
+/// A message whose frame_id is neither `map` (ENU) nor `ned` is refused whole; a track with non-finite or absurd values
+/// (TrackLimits) is left out of its message; a payload that is no ObstacleTracks message is refused before anything is
+/// allocated for it.
+class DdsTrackReader final : public tracking::TrackSource {
+ public:
+  /// Returns at once; discovery goes on in the background. `node` and `clock` must outlive the reader.
+  /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
+  DdsTrackReader(DdsNode& node, const base::Clock& clock);
+  /// On a node of its own. @throws as DdsNode's.
+  DdsTrackReader(int domain, const base::Clock& clock);
+  ~DdsTrackReader() override;
+  DdsTrackReader(const DdsTrackReader&) = delete;
+  DdsTrackReader& operator=(const DdsTrackReader&) = delete;
+
+  bool poll(tracking::TrackMessage& message) override;
+  [[nodiscard]] tracking::TrackSourceStatus status() const override;
+  void notify(base::Wake& wake) override;
+
+  /// Messages thrown away unread because nobody polled.
+  [[nodiscard]] std::uint64_t overruns() const;
+  /// Payloads that could not be decoded.
+  [[nodiscard]] std::uint64_t malformed() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<DdsNode> own_node_;  // outlives impl_; null where the node is another's
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Writes the topic best effort, volatile. Not safe for concurrent publish().
+class DdsTrackWriter {
+ public:
+  /// Returns at once; discovery goes on in the background. `node` must outlive the writer. @throws as DdsTrackReader's.
+  explicit DdsTrackWriter(DdsNode& node);
+  /// On a node of its own. @throws as DdsNode's.
+  explicit DdsTrackWriter(int domain);
+  ~DdsTrackWriter();
+  DdsTrackWriter(const DdsTrackWriter&) = delete;
+  DdsTrackWriter& operator=(const DdsTrackWriter&) = delete;
+
+  /// Sends one message with all of `tracks`, as they are: in the frame that `frame_id` names, unchecked. `stamp_unix_s`
+  /// is system time, seconds since 1970. False when Fast DDS does not take it. With no reader there it goes nowhere.
+  [[nodiscard]] bool publish(std::span<const planner::base::Track> tracks, double stamp_unix_s,
+                             const std::string& frame_id = "map");
+  /// Readers matched now.
+  [[nodiscard]] int readers() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<DdsNode> own_node_;  // outlives impl_; null where the node is another's
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace jink::bridge::dds

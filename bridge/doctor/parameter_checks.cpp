@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/doctor/parameter_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace jink::bridge::doctor {
+
+namespace {
+
+using Level = Check::Level;
+using Parameters = std::map<std::string, vehicle::px4::Parameter>;
+
+constexpr int kOffboardExcepted = 4;     // bit 2 of COM_RCL_EXCEPT
+constexpr double kLongestLoss_s = 1.0;   // PX4's default of COM_OF_LOSS_T
+constexpr double kShortestLoss_s = 0.2;  // ten setpoints: less, and a hiccup of the link is a failsafe
+
+const std::array<std::string, 6> kNames{"COM_OBL_RC_ACT", "COM_OF_LOSS_T", "COM_RCL_EXCEPT",
+                                        "NAV_RCL_ACT",    "NAV_DLL_ACT",   "COM_LOW_BAT_ACT"};
+
+std::optional<double> value_of(const Parameters& parameters, const std::string& name) {
+  const auto found = parameters.find(name);
+  if (found == parameters.end()) return std::nullopt;
+  return found->second.value;
+}
+
+Check untold(const std::string& name) {
+  return {Level::kWarning, name, "not told", "look it up with a ground station: this decides what a loss does"};
+}
+
+// The setpoints stop: the companion died or its link did.
+Check offboard_loss(double value) {
+  constexpr std::array<const char*, 8> kMeanings{"position mode", "altitude mode", "stabilized mode", "return",
+                                                 "land",          "hold",          "terminate",       "disarm"};
+  Check check{Level::kWarning, "COM_OBL_RC_ACT", "", "set 5 (hold) or 4 (land)"};
+  const bool known = value >= 0.0 && value < static_cast<double>(kMeanings.size());
+  if (!known) {
+    check.finding = fmt::format("{:g}: not known here", value);
+    return check;
+  }
+  const auto action = static_cast<std::size_t>(value);
+  check.finding = fmt::format("{}: {} when setpoints stop", action, kMeanings[action]);
+  if (action <= 2) check.finding += "; without RC the vehicle sinks and lands where it is";
+  if (action == 3) check.finding += ", which climbs and flies where nothing was planned";
+  if (action >= 6) {
+    check.level = Level::kFault;
+    check.finding += ": the vehicle falls";
+  }
+  if (action == 4 || action == 5) {
+    check.level = Level::kOk;
+    check.remedy.clear();
+  }
+  return check;
+}
+
+Check loss_time(double value) {
+  Check check{Level::kOk, "COM_OF_LOSS_T", fmt::format("{:g} s without setpoints until the autopilot acts", value), ""};
+  if (!(value <= kLongestLoss_s)) {
+    check.level = Level::kWarning;
+    check.finding += ", in which it flies on";
+    check.remedy = "set 1.0 or less";
+  } else if (value < kShortestLoss_s) {
+    check.level = Level::kWarning;
+    check.finding += ": a hiccup of the link is enough";
+    check.remedy = "set 0.5 to 1.0";
+  }
+  return check;
+}
+
+Check manual_loss(double value, std::optional<double> action, bool rc_receiver) {
+  const bool excepted = std::isfinite(value) && (static_cast<int>(value) & kOffboardExcepted) != 0;
+  if (excepted) {
+    return {Level::kOk, "COM_RCL_EXCEPT", fmt::format("{:g}: offboard goes on without manual control", value), ""};
+  }
+  const std::string then = action ? fmt::format("NAV_RCL_ACT ({:g})", *action) : std::string("NAV_RCL_ACT");
+  Check check{Level::kOk, "COM_RCL_EXCEPT",
+              fmt::format("{:g}: losing manual control ends offboard, by {}", value, then), ""};
+  if (!rc_receiver) {
+    check.level = Level::kWarning;
+    check.finding += "; none is there now";
+    check.remedy = "to fly without RC set bit 2: 4";
+  }
+  return check;
+}
+
+Check ground_station_loss(double value) {
+  if (value == 0.0) return {Level::kOk, "NAV_DLL_ACT", "0: losing a ground station changes nothing", ""};
+  return {Level::kWarning, "NAV_DLL_ACT",
+          fmt::format("{:g}: losing the ground station ends offboard; without one the vehicle may not arm", value),
+          "keep a ground station connected, or set 0"};
+}
+
+Check low_battery(double value) {
+  if (value != 0.0) return {Level::kOk, "COM_LOW_BAT_ACT", fmt::format("{:g}: the autopilot acts", value), ""};
+  return {Level::kWarning, "COM_LOW_BAT_ACT", "0: a low battery is only told of", "set 2 (land) or 3 (return, land)"};
+}
+
+}  // namespace
+
+std::span<const std::string> doctor_parameters() {
+  return kNames;
+}
+
+std::vector<Check> inspect_parameters(const Parameters& parameters, bool rc_receiver) {
+  std::vector<Check> checks;
+  const auto judge = [&](const std::string& name, auto&& meaning, bool expected) {
+    const std::optional<double> value = value_of(parameters, name);
+    if (value) {
+      checks.push_back(meaning(*value));
+    } else if (expected) {
+      checks.push_back(untold(name));
+    }
+  };
+  judge("COM_OBL_RC_ACT", offboard_loss, true);
+  judge("COM_OF_LOSS_T", loss_time, true);
+  judge(
+      "COM_RCL_EXCEPT",
+      [&](double value) { return manual_loss(value, value_of(parameters, "NAV_RCL_ACT"), rc_receiver); }, true);
+  judge("NAV_DLL_ACT", ground_station_loss, true);
+  judge("COM_LOW_BAT_ACT", low_battery, false);
+  return checks;
+}
+
+}  // namespace jink::bridge::doctor

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one place where the autopilot's north-east-down and global coordinates meet the project's east-north-up. The
+// local frames have the same origin, the autopilot's local origin, so positions, velocities and accelerations convert
+// alike. All are pure and safe from any thread; non-finite input gives non-finite output.
+#pragma once
+
+#include <GeographicLib/LocalCartesian.hpp>
+
+#include "bridge/frames/geodetic.hpp"
+#include "planner/base/types.hpp"
+
+namespace jink::bridge::frames {
+
+/// (north, east, down) to (east, north, up). Its own inverse as a map of numbers: both names exist to be read.
+[[nodiscard]] Vec3 enu_from_ned(const Vec3& ned);
+/// (east, north, up) to (north, east, down).
+[[nodiscard]] Vec3 ned_from_enu(const Vec3& enu);
+
+/// The same angle in (-pi, pi].
+[[nodiscard]] double wrap_angle(double angle);
+
+/// Heading (clockwise from north) to yaw (counter-clockwise from east), in (-pi, pi].
+[[nodiscard]] double yaw_enu_from_heading(double heading_ned);
+/// Yaw (counter-clockwise from east) to heading (clockwise from north), in (-pi, pi].
+[[nodiscard]] double heading_from_yaw_enu(double yaw_enu);
+
+/// The tangent plane at an origin on the WGS 84 ellipsoid: local ENU to geodetic coordinates and back.
+class LocalFrame {
+ public:
+  explicit LocalFrame(const Geodetic& origin);
+  [[nodiscard]] const Geodetic& origin() const { return origin_; }
+  [[nodiscard]] Geodetic to_geodetic(const Vec3& position_enu) const;
+  [[nodiscard]] Vec3 to_enu(const Geodetic& position) const;
+
+ private:
+  Geodetic origin_;
+  GeographicLib::LocalCartesian tangent_plane_;
+};
+
+}  // namespace jink::bridge::frames

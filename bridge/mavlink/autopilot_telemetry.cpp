@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/mavlink/autopilot_telemetry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace jink::bridge::mavlink {
+
+namespace {
+
+constexpr std::uint32_t kRcReceiver = 0x10000;  // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+
+}  // namespace
+
+void AutopilotTelemetry::notice(std::string name, std::string detail) {
+  if (notices_.size() == kNotices) notices_.pop_front();
+  notices_.push_back({std::move(name), std::move(detail)});
+}
+
+std::optional<LinkNotice> AutopilotTelemetry::next_notice() {
+  if (notices_.empty()) return std::nullopt;
+  LinkNotice oldest = std::move(notices_.front());
+  notices_.pop_front();
+  return oldest;
+}
+
+void AutopilotTelemetry::restarted() {
+  ++state_.reboots;
+  notice("autopilot_rebooted", "its time began anew; its local origin may be another");
+  resets_.restart();
+  position_boot_ms_.reset();
+  state_.origin.reset();
+  state_.armable = false;
+  state_.landed_state_known = false;
+  sys_status_heard_ = false;
+  failed_health_.clear();
+  batteries_.clear();
+  remaining_ = vehicle::BatteryState::kUnknown;
+  info_.version.reset();
+  info_.battery_percent.reset();
+}
+
+// The autopilot's time, by which a reboot shows.
+void AutopilotTelemetry::boot_time(std::uint32_t boot_ms) {
+  if (boot_ms_) {
+    // The counter wraps after 49 days, and so does this difference.
+    const auto later_ms = static_cast<std::int32_t>(boot_ms - *boot_ms_);
+    if (later_ms < -static_cast<std::int32_t>(kReboot_s * 1e3)) {
+      restarted();
+    } else if (later_ms <= 0) {
+      return;
+    } else if (boot_ms < *boot_ms_) {
+      resets_.restart();
+    }
+  }
+  boot_ms_ = boot_ms;
+}
+
+bool AutopilotTelemetry::on(double now, const Heartbeat& message) {
+  if (message.autopilot == vehicle::px4::kAutopilotInvalid) {
+    malformed();
+    return false;
+  }
+  ++counts_.heartbeats;
+  state_.heartbeat_stamp = now;
+  state_.armed = (message.base_mode & vehicle::px4::kArmedFlag) != 0U;
+  state_.mode = vehicle::px4::flight_mode(static_cast<std::uint8_t>(message.autopilot), message.custom_mode);
+  state_.failsafe = message.system_status >= vehicle::px4::kStateCritical;
+  info_.autopilot = message.autopilot;
+  return true;
+}
+
+bool AutopilotTelemetry::on(double now, const LocalPosition& message) {
+  boot_time(message.boot_ms);
+  if (position_boot_ms_ && static_cast<std::int32_t>(message.boot_ms - *position_boot_ms_) < 0) {
+    ++counts_.late;
+    return false;
+  }
+  position_boot_ms_ = message.boot_ms;
+  ++counts_.positions;
+  state_.position_stamp = now;
+  state_.position = message.position;
+  state_.velocity = message.velocity;
+  resets_.on_position({message.boot_ms * 1e-3, state_.position, state_.velocity});
+  return true;
+}
+
+void AutopilotTelemetry::on(const Attitude& message) {
+  boot_time(message.boot_ms);
+  ++counts_.attitudes;
+  state_.yaw = message.yaw;
+}
+
+void AutopilotTelemetry::on(const Odometry& message) {
+  if (!message.local_frame) return;  // its counter is not this position's
+  ++counts_.odometries;
+  resets_.on_odometry({message.time, message.position, message.velocity}, message.reset_counter);
+}
+
+void AutopilotTelemetry::on(const SysStatus& message) {
+  sys_status_heard_ = true;
+  failed_health_ = vehicle::px4::failed_health(message.present, message.enabled, message.health);
+  state_.armable = (message.health & vehicle::px4::kPrearmCheck) != 0U;
+  state_.gps_lost = (message.present & message.enabled & ~message.health & vehicle::px4::kGps) != 0U;
+  remaining_ = vehicle::px4::battery_state_from_remaining(message.battery_remaining_percent);
+  info_.battery_percent.reset();
+  if (remaining_ != vehicle::BatteryState::kUnknown) info_.battery_percent = message.battery_remaining_percent;
+  info_.rc_receiver = (message.present & message.enabled & message.health & kRcReceiver) != 0U;
+}
+
+void AutopilotTelemetry::on(const ExtendedSysState& message) {
+  state_.in_air = vehicle::px4::in_air(static_cast<int>(message.landed_state));
+  state_.landed_state_known = true;
+}
+
+void AutopilotTelemetry::on(const EstimatorStatus& message) {
+  estimator_ok_ = vehicle::px4::estimator_has_local_position(message.flags);
+  info_.estimator = message.flags;
+}
+
+void AutopilotTelemetry::on(const BatteryStatus& message) {
+  batteries_[message.id] = vehicle::px4::battery_state(message.charge_state);
+}
+
+void AutopilotTelemetry::on(const Origin& message) {
+  state_.origin = message.place;
+}
+
+void AutopilotTelemetry::on(const AutopilotVersion& message) {
+  info_.version = vehicle::px4::version(message.flight_sw_version);
+}
+
+void AutopilotTelemetry::on(const StatusText& message) {
+  for (std::string& line : texts_.add(message.severity, message.id, message.chunk, message.text)) {
+    notice("autopilot_text", std::move(line));
+  }
+}
+
+vehicle::VehicleState AutopilotTelemetry::state(double now) const {
+  vehicle::VehicleState state = state_;
+  const bool fresh = state.position_stamp >= 0.0 && now - state.position_stamp <= kPositionMaxAge_s;
+  state.local_position_ok = fresh && estimator_ok_;
+  state.health = sys_status_heard_ ? failed_health_ : "no SYS_STATUS yet";
+  if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";
+  state.estimate_resets = resets_.count();
+  state.estimate_shift = resets_.shift();
+  for (const auto& [id, battery] : batteries_) state.battery = std::max(state.battery, battery);
+  if (state.battery == vehicle::BatteryState::kUnknown) state.battery = remaining_;
+  return state;
+}
+
+}  // namespace jink::bridge::mavlink

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/prediction/forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/base/portable_math.hpp"
+
+namespace jink::bridge::prediction {
+
+namespace {
+
+/// One axis of bouncing: folded back into the room as often as needed.
+double fold(double x, double least, double most) {
+  const bool low = std::isfinite(least);
+  const bool high = std::isfinite(most);
+  if (low && high) {
+    const double width = most - least;
+    if (!(width > 0.0)) return least;
+    const double phase = std::fmod(x - least, 2.0 * width);
+    const double positive = phase < 0.0 ? phase + 2.0 * width : phase;
+    return least + (positive > width ? 2.0 * width - positive : positive);
+  }
+  if (low && x < least) return 2.0 * least - x;
+  if (high && x > most) return 2.0 * most - x;
+  return x;
+}
+
+}  // namespace
+
+Vec3 HarmonicMotion::position(double t) const {
+  Vec3 result = terms.row(0);
+  for (int k = 1; k <= kHarmonics; ++k) {
+    const auto [sine, cosine] = planner::base::sine_cosine(k * frequency * t);
+    result += cosine * terms.row(2 * k - 1).transpose() + sine * terms.row(2 * k).transpose();
+  }
+  return result;
+}
+
+HarmonicMotion HarmonicMotion::later(double t) const {
+  HarmonicMotion result = *this;
+  for (int k = 1; k <= kHarmonics; ++k) {
+    const auto [sine, cosine] = planner::base::sine_cosine(k * frequency * t);
+    result.terms.row(2 * k - 1) = cosine * terms.row(2 * k - 1) + sine * terms.row(2 * k);
+    result.terms.row(2 * k) = cosine * terms.row(2 * k) - sine * terms.row(2 * k - 1);
+  }
+  return result;
+}
+
+Vec3 BouncingMotion::position(double t) const {
+  Vec3 result = begin + t * velocity;
+  for (int axis = 0; axis < 3; ++axis) result[axis] = fold(result[axis], room.min[axis], room.max[axis]);
+  return result;
+}
+
+BouncingMotion::Turn BouncingMotion::first_turn() const {
+  Turn first;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double v = velocity[axis];
+    if (v == 0.0) continue;
+    const double bound = v > 0.0 ? room.max[axis] : room.min[axis];
+    const double t = std::max(0.0, (bound - begin[axis]) / v);
+    if (t < first.t) first = {t, axis, v > 0.0};
+  }
+  return first;
+}
+
+planner::geometry::KnownPath to_path(const Forecast& forecast, double horizon, double step) {
+  planner::geometry::KnownPath path;
+  path.radius = forecast.radius;
+  path.position_sigma = forecast.position_sigma;
+  path.velocity_sigma = forecast.velocity_sigma;
+  const int points = std::max(1, static_cast<int>(std::ceil(horizon / step))) + 1;
+  path.points.reserve(static_cast<std::size_t>(points));
+  for (int n = 0; n < points; ++n) {
+    const double t = n * step;
+    const Vec3 position = std::visit([t](const auto& motion) { return motion.position(t); }, forecast.motion);
+    path.points.push_back({t, position, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
+Obstacles obstacles_of(std::span<const planner::base::Track> tracks, std::span<const Forecast> forecasts,
+                       std::span<const planner::geometry::KnownPath> paths, double horizon, double step) {
+  Obstacles result;
+  result.paths.assign(paths.begin(), paths.end());
+  std::vector<bool> replaced(tracks.size(), false);
+  for (const Forecast& forecast : forecasts) {
+    if (forecast.track >= tracks.size()) continue;
+    result.paths.push_back(to_path(forecast, horizon, step));
+    result.paths.back().id = tracks[forecast.track].id;
+    if (forecast.replaces) replaced[forecast.track] = true;
+  }
+  result.tracks.reserve(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!replaced[i]) result.tracks.push_back(tracks[i]);
+  }
+  return result;
+}
+
+}  // namespace jink::bridge::prediction

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Watches tracks for motions that a constant acceleration does not predict, and predicts those that prove predictable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/harmonic_fit.hpp"
+#include "planner/base/types.hpp"
+
+namespace jink::bridge::prediction {
+
+/// Where the surfaces of all tracks have been, and where they were thrown back. A bound is known when two different
+/// tracks turned at it and none was ever beyond.
+class LearnedRoom {
+ public:
+  void saw(const Vec3& position, double radius);
+  void turned(std::uint64_t track, int axis, bool upper, double surface);
+  /// For the centre of a sphere; unbounded where no bound is known.
+  [[nodiscard]] planner::base::Box bounds(double radius) const;
+
+ private:
+  struct Side {
+    double extent = -planner::base::kInfinity;  ///< along the outward direction
+    double surface = -planner::base::kInfinity;
+    std::uint64_t first = 0;
+    bool any = false, confirmed = false;
+  };
+  std::array<std::array<Side, 2>, 3> sides_;  // axis; lower, upper
+};
+
+/// What one track did, and what follows from it. A learned motion is believed for as long as it keeps being clearly
+/// better than plain prediction: each fit is held against what comes in the following kLead seconds, longer where both
+/// do. A turn is relied on where the track turned twice, and avoided besides plain prediction where it turned once or
+/// others did.
+class LearnedTrack {
+ public:
+  /// The newest measurement, as measured and as estimated, at its instant `t`. O(samples on trial).
+  void observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate, std::uint64_t name,
+               LearnedRoom& room);
+
+  /// When the next fit is due.
+  [[nodiscard]] double fit_due() const { return next_fit_; }
+  /// Makes a fit of what was observed; `measured` and `estimate` as in the last observe(). Tenths of a millisecond.
+  void fit(double t, const planner::base::Track& measured, const planner::base::Track& estimate);
+
+  /// What is known of the way from `now` on, or nothing. `estimate` is the newest estimate, of the instant `t`.
+  [[nodiscard]] std::optional<Forecast> forecast(double now, double t, const planner::base::Track& estimate,
+                                                 const LearnedRoom& room) const;
+
+  /// Whether it is new, and not yet understood: plain prediction has been seen to fail or does not fit what is
+  /// measured, and nothing else has proved right. Never longer than kPuzzle.
+  [[nodiscard]] bool puzzling(double t) const { return puzzling_ && t - first_ < kPuzzle; }
+
+  static constexpr double kLead = 1.0;    ///< s
+  static constexpr double kPuzzle = 2.0;  ///< s
+
+ private:
+  static constexpr std::size_t kMost = 64;  // samples
+  /// A fit on trial.
+  struct Trial {
+    double begun = 0.0;
+    HarmonicMotion motion;
+    planner::base::Track plain;
+    double misfit = 0.0, plain_misfit = 0.0;  // m, the most so far
+    double noise = 0.0;                       // m, that is part of them
+    [[nodiscard]] bool plain_wrong() const;
+  };
+  void remember(const MotionSample& sample, bool exact);
+  void thin_out(bool exact);
+  void judge(double t, const planner::base::Track& estimate);
+  void look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, LearnedRoom& room);
+  [[nodiscard]] bool certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const;
+  void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedRoom& room);
+
+  std::vector<MotionSample> samples_;  // thinned out as they grow old
+  double spacing_ = 0.0;
+  double begun_ = 0.0;                // the newest sample
+  std::vector<MotionSample> recent_;  // the last few as measured
+  std::vector<Trial> trials_;         // oldest first
+  double next_fit_ = 0.0;
+  double first_ = -1.0;  // when it was observed first
+  bool puzzling_ = false;
+  double frequency_ = 0.0;                       // of the last fit; 0: none
+  std::optional<double> proven_;                 // m, misfit of the last trial that ended well
+  bool plain_ = false;                           // constant acceleration does as well
+  int failures_ = 0;                             // trials in a row that did not prove right; below 0: that did
+  planner::base::Box turns_;                     // of its own
+  std::array<std::array<int, 2>, 3> returns_{};  // axis; lower, upper: how often it turned there
+  double last_turn_ = -1.0;
+};
+
+}  // namespace jink::bridge::prediction

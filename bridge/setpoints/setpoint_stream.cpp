@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/setpoints/setpoint_stream.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace jink::bridge::setpoints {
+namespace {
+
+constexpr double kBrakeStep = 0.05;         // s, between points of a stop
+constexpr std::size_t kLongestStop = 4000;  // points: no vehicle is so fast
+constexpr double kAtRest = 0.02;            // m/s
+constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
+constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
+constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
+constexpr double kSteady = 1.0;        // m/s², of the reference, above which a lag says more about attitude and rotors
+constexpr double kLearningRate = 0.4;  // 1/s² of drag for each metre of lag
+constexpr double kMostDrag = 2.0;      // 1/s
+constexpr double kSaturated = 0.95;    // of the largest speed
+constexpr double kWaiting = 2.0;       // of what the vehicle is late, that the reference waits for it in a second
+
+}  // namespace
+
+void SetpointStream::hold(const Vec3& position, double now) {
+  current_ = {{now, position, Vec3::Zero(), Vec3::Zero()}};
+  next_.clear();
+  is_plan_ = false;
+  is_braking_ = false;
+}
+
+void SetpointStream::follow(planner::base::TimedPath path) {
+  assert(!path.empty());
+  if (!next_.empty()) {
+    // The one that waits for its start, or was followed till now, goes on where the present one ends.
+    const double joint = next_.front().t;
+    if (current_.front().t < joint - kJoint) {
+      planner::base::TimedPoint end = planner::base::sample(current_, joint - kJoint);
+      std::erase_if(current_,
+                    [&](const planner::base::TimedPoint& p) { return p.t >= end.t || p.t < joint - kHistory; });
+      current_.push_back(end);
+    } else {
+      current_.clear();
+    }
+    current_.insert(current_.end(), next_.begin(), next_.end());
+  }
+  next_ = std::move(path);
+  if (current_.empty()) current_ = next_;
+  is_plan_ = true;
+  is_braking_ = false;
+}
+
+void SetpointStream::brake(double now, const std::optional<planner::base::TimedPoint>& measured) {
+  if (is_braking_ || (!active() && !measured)) return;
+  const planner::base::TimedPoint from = measured ? *measured : reference(now);
+  planner::base::TimedPath stop;
+  Vec3 position = from.position;
+  Vec3 velocity = from.velocity;
+  double t = now;
+  const double braking = deceleration(position, velocity);
+  while (velocity.norm() > kAtRest && stop.size() < kLongestStop) {
+    const double speed = velocity.norm();
+    const double next_speed = std::max(0.0, speed - braking * kBrakeStep);
+    const Vec3 direction = velocity / speed;
+    stop.push_back({t, position, velocity, -braking * direction});
+    position += 0.5 * (speed + next_speed) * kBrakeStep * direction;
+    velocity = next_speed * direction;
+    t += kBrakeStep;
+  }
+  stop.push_back({t, position, Vec3::Zero(), Vec3::Zero()});
+  current_ = std::move(stop);
+  next_.clear();
+  is_plan_ = false;
+  is_braking_ = true;
+}
+
+// A stop from speed v takes v²/2a; along each axis the volume leaves so much way.
+double SetpointStream::deceleration(const Vec3& position, const Vec3& velocity) const {
+  double needed = settings_.braking;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double v = velocity[axis];
+    const double way =
+        v > 0.0 ? settings_.volume.max[axis] - position[axis] : position[axis] - settings_.volume.min[axis];
+    if (v == 0.0 || way <= 0.0) continue;  // outside already: there is nothing to keep
+    needed = std::max(needed, std::abs(v) * velocity.norm() / (2.0 * way));
+  }
+  return std::min(needed, std::max(settings_.braking, settings_.hardest));
+}
+
+void SetpointStream::shift(const Vec3& by) {
+  for (planner::base::TimedPoint& point : current_) point.position += by;
+  for (planner::base::TimedPoint& point : next_) point.position += by;
+}
+
+void SetpointStream::wait(double dt) {
+  for (planner::base::TimedPoint& point : current_) point.t += dt;
+  for (planner::base::TimedPoint& point : next_) point.t += dt;
+  waited_ += dt;
+}
+
+void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity, double dt) {
+  if (!active() || !is_plan_) return;
+  const planner::base::TimedPoint point = reference(t);
+  const double speed = point.velocity.norm();
+  if (speed < kLearningSpeed) return;
+  const double lag = (point.position - position).dot(point.velocity) / speed;
+  if (lag > 0.0) wait(kWaiting * lag / speed * dt);
+  const bool saturated = lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed;
+  if (saturated || point.acceleration.norm() > kSteady) return;
+  drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
+}
+
+planner::base::TimedPoint SetpointStream::reference(double t) const {
+  assert(active());
+  return planner::base::sample(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
+}
+
+vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
+  const planner::base::TimedPoint point = reference(now + settings_.lead);
+  const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead);
+  const double taken_off = 1.0 + settings_.damping;
+  const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
+  return {point.position, point.velocity, acceleration + drag_ * later.velocity, yaw};
+}
+
+planner::base::TimedPath SetpointStream::plan(double t) const {
+  if (!is_plan_) return {};
+  return planner::base::remainder(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
+}
+
+planner::base::TimedPath SetpointStream::ahead(double t) const {
+  assert(active());
+  if (next_.empty()) return planner::base::remainder(current_, t);
+  if (t >= next_.front().t) return planner::base::remainder(next_, t);
+  planner::base::TimedPath path = planner::base::remainder(current_, t);
+  const planner::base::TimedPoint end = planner::base::sample(path, next_.front().t - kJoint);
+  std::erase_if(path, [&](const planner::base::TimedPoint& p) { return p.t >= end.t; });
+  if (!path.empty()) path.push_back(end);
+  path.insert(path.end(), next_.begin(), next_.end());
+  return path;
+}
+
+}  // namespace jink::bridge::setpoints

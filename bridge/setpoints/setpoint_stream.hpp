@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is sent now: the plan sampled ahead of the autopilot's lag, or a stop.
+#pragma once
+
+#include <optional>
+
+#include "bridge/vehicle/vehicle_link.hpp"
+#include "planner/base/trajectory.hpp"
+
+namespace jink::bridge::setpoints {
+
+/// The reference that the vehicle is to be on, as a timed path in the companion's clock, and the setpoints that put it
+/// there. A new plan takes over at its own start; a brake takes over at once. Not thread-safe.
+class SetpointStream {
+ public:
+  struct Settings {
+    double lead = 0.0;               ///< s: position and velocity are the reference's that much later (transport)
+    double acceleration_lead = 0.0;  ///< s: the acceleration is (attitude loop and rotors too)
+    double drag = 0.0;               ///< 1/s: deceleration per speed that the acceleration makes up for, to begin with
+    double damping = 0.0;            ///< of a commanded acceleration, that the autopilot takes off again, horizontally
+    double braking = 2.0;            ///< m/s², deceleration of a brake
+    double hardest = 6.0;            ///< m/s², of a brake that would leave the volume
+    planner::base::Box volume{};     ///< in which a brake is to end
+    double max_speed = planner::base::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
+  };
+  explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
+
+  /// Stay at a point. Forgets any plan.
+  void hold(const Vec3& position, double now);
+  /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed
+  /// before. Precondition: not empty.
+  void follow(planner::base::TimedPath path);
+  /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity,
+  /// then holds there. Where that would lead out of `volume` it brakes as hard as it takes to stay inside, up to
+  /// `hardest`. Does nothing while a brake is on.
+  void brake(double now, const std::optional<planner::base::TimedPoint>& measured = {});
+  /// Moves all that is followed: the autopilot's estimate jumped by that, the vehicle did not move.
+  void shift(const Vec3& by);
+
+  /// Where the vehicle is to be at time t. Precondition: active().
+  [[nodiscard]] planner::base::TimedPoint reference(double t) const;
+  /// The setpoint to send at `now`, heading `yaw`.
+  [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw) const;
+
+  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Where
+  /// it is late on the reference, that waits for it, little by little; from how late it is or how early in steady
+  /// flight, and not at its largest speed, at which no thrust makes good what it is late, the drag is learned.
+  void observe(double t, const Vec3& position, const Vec3& velocity, double dt);
+  /// For how long the reference has waited in all, s. A path that was made to follow on an earlier reference starts
+  /// later by what it has waited since.
+  [[nodiscard]] double waited() const { return waited_; }
+  /// The drag that setpoints make up for now, 1/s.
+  [[nodiscard]] double drag() const { return drag_; }
+
+  [[nodiscard]] bool active() const { return !current_.empty(); }
+  [[nodiscard]] bool braking() const { return is_braking_; }
+  /// The path followed at time t, for the planner's warm start; empty while holding or braking.
+  [[nodiscard]] planner::base::TimedPath plan(double t) const;
+  /// All that is followed from time t on, the path that waits for its start, a stop and a stay included: reference() as
+  /// a path. Precondition: active().
+  [[nodiscard]] planner::base::TimedPath ahead(double t) const;
+
+ private:
+  [[nodiscard]] double deceleration(const Vec3& position, const Vec3& velocity) const;
+  void wait(double dt);
+
+  Settings settings_;
+  double drag_;
+  double waited_ = 0.0;
+  bool is_plan_ = false;
+  bool is_braking_ = false;
+  planner::base::TimedPath current_;
+  planner::base::TimedPath next_;  // takes over at its first time
+};
+
+}  // namespace jink::bridge::setpoints

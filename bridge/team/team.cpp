@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/team/team.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace jink::bridge::team {
+namespace {
+
+using planner::base::TimedPath;
+using planner::base::TimedPoint;
+
+constexpr double kDoubt = 0.03;        // m/s, how a path is doubted from the start: it may be planned anew
+constexpr double kSilentDoubt = 0.4;   // m/s, and while nothing more is heard
+constexpr double kAlive = 0.5;         // s, since its last message, within which a vehicle is surely there
+constexpr double kUnknownDelay = 0.1;  // s, that a message may have taken where only changes of its delay are known
+constexpr double kLeastMargin = 0.1;   // m
+constexpr double kUnledMargin = 0.5;   // m, of a vehicle that follows nothing of ours
+constexpr double kMostMargin = 2.0;    // m
+constexpr double kForget = 3.0;        // s, in which a deviation fades
+constexpr double kOnTheWay = 0.7;      // m from a place to hold, beyond which the way there is told
+constexpr double kWaySpeed = 1.0;      // m/s, taken for it: take-off is about that fast
+constexpr double kLeastStep = 0.01;    // s, between points told
+constexpr double kDrift = 1.0;         // s
+
+std::string name_of(std::uint64_t vehicle) {
+  return "vehicle " + std::to_string(system_of(vehicle));
+}
+
+/// The largest speed on a path.
+double fastest(const TimedPath& path) {
+  planner::geometry::KnownPath known;
+  known.points = path;
+  return known.fastest();
+}
+
+/// The path up to `until`, without points that follow another at once, as they do where one plan takes over from
+/// another.
+TimedPath shortened(const TimedPath& path, double until) {
+  TimedPath result;
+  for (const TimedPoint& point : path) {
+    if (result.empty() || (point.t <= until && point.t - result.back().t >= kLeastStep)) result.push_back(point);
+  }
+  const TimedPoint end = planner::base::sample(path, std::min(until, path.back().t));
+  if (result.size() > 1 && end.t - result.back().t < kLeastStep) result.pop_back();
+  if (end.t - result.back().t >= kLeastStep) result.push_back(end);
+  return result;
+}
+
+/// The path from the sender's frame into ours.
+void move_to(const frames::Geodetic& ours, const frames::Geodetic& theirs, TimedPath& path) {
+  if (ours == theirs) return;
+  const frames::LocalFrame from(theirs);
+  const frames::LocalFrame to(ours);
+  for (TimedPoint& point : path) point.position = to.to_enu(from.to_geodetic(point.position));
+}
+
+}  // namespace
+
+Team::Team(IntentTransport& transport, double radius, double coast_s)
+    : transport_(transport), radius_(radius), coast_s_(coast_s) {}
+
+void Team::listen(double now, const vehicle::VehicleState& own) {
+  own_vehicle_ = vehicle_id(own.system_id, transport_.identity());
+  IntentMessage message;
+  while (transport_.poll(message)) {
+    if (message.writer != transport_.identity()) take(message, own);
+  }
+  forget_the_silent(now);
+  find_namesakes(now);
+}
+
+void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) {
+  const auto known = peers_.find(message.writer);
+  if (known == peers_.end() && peers_.size() >= kMostVehicles) {
+    ++crowded_;
+    return;
+  }
+  Peer& peer = known == peers_.end() ? peers_[message.writer] : known->second;
+  peer.vehicle = message.intent.vehicle;
+  peer.seen = message.received;
+  const std::optional<double> delay = peer.clock.delay(message.received, message.stamp_age);
+  if (peer.clock.off() && !std::exchange(peer.announced_clock, true)) {
+    news_.push_back(
+        {"team_clock",
+         name_of(peer.vehicle) + ": its stamps are not this computer's time; only changes of its delay are known"});
+  }
+  if (!delay) {
+    ++late_;
+    return;
+  }
+  if (!message.intent.origin || !own.origin) {
+    ++unplaced_;
+    unplaced_why_ = name_of(peer.vehicle) + ": where its path is cannot be told, " +
+                    (own.origin ? "it does not know its origin" : "this vehicle's origin is not known");
+    return;
+  }
+  const double told = message.received - *delay;
+  if (peer.placed >= 0.0 && told < peer.told) return;  // overtaken on the way
+  if (peer.placed < 0.0) news_.push_back({"team_vehicle", name_of(peer.vehicle) + " tells where it will be"});
+  peer.placed = message.received;
+  peer.told = told;
+  peer.path = message.intent.path;
+  move_to(*own.origin, *message.intent.origin, peer.path);
+  for (TimedPoint& point : peer.path) point.t += told;
+  peer.radius = message.intent.radius;
+  peer.margin = message.intent.margin;
+  if (peer.clock.off()) peer.margin += kUnknownDelay * fastest(peer.path);
+}
+
+void Team::forget_the_silent(double now) {
+  const double limit = kFresh + coast_s_;
+  for (auto& [writer, peer] : peers_) {
+    const bool silent = peer.placed >= 0.0 && now - peer.placed > limit;
+    if (silent && !peer.announced_silent) {
+      news_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
+                                        " s, it is taken to hang where its path ended"});
+    }
+    peer.announced_silent = silent;
+    if (silent && now - peer.placed > kHangs) peer.placed = -1.0;
+  }
+  // Who began anew speaks for itself again.
+  const auto replaced = [&](const Peer& old) {
+    return old.announced_silent && std::any_of(peers_.begin(), peers_.end(), [&](const auto& other) {
+             return !other.second.announced_silent && system_of(other.second.vehicle) == system_of(old.vehicle);
+           });
+  };
+  std::erase_if(peers_, [&](const auto& item) { return now - item.second.seen > kHangs || replaced(item.second); });
+}
+
+void Team::find_namesakes(double now) {
+  std::map<std::uint32_t, int> bearers;
+  ++bearers[system_of(own_vehicle_)];
+  for (const auto& [writer, peer] : peers_) {
+    if (now - peer.seen <= kAlive) ++bearers[system_of(peer.vehicle)];
+  }
+  for (const auto& [system, count] : bearers) {
+    if (system == 0 || count < 2) {
+      namesakes_.erase(system);
+    } else if (namesakes_.insert(system).second) {
+      news_.push_back({"team_same_id", std::to_string(count) + " vehicles of the team are MAVLink system " +
+                                           std::to_string(system) +
+                                           (system == system_of(own_vehicle_) ? ", as this one" : "") +
+                                           ": each is avoided, but each needs a MAV_SYS_ID of its own"});
+    }
+  }
+}
+
+std::vector<planner::geometry::KnownPath> Team::paths(double now, double start) const {
+  std::vector<planner::geometry::KnownPath> paths;
+  for (const auto& [writer, peer] : peers_) {
+    if (peer.placed < 0.0) continue;
+    planner::geometry::KnownPath path;
+    path.id = peer.vehicle;
+    path.points = peer.path;
+    path.offset = start;
+    path.radius = peer.radius;
+    path.margin = peer.margin;
+    path.position_sigma = kSilentDoubt * std::max(0.0, now - peer.placed - kFresh);
+    path.velocity_sigma = kDoubt;
+    path.age = std::max(0.0, start - peer.told);
+    if (own_vehicle_ < peer.vehicle && !peer.announced_silent) path.until = kRightOfWay;  // who is silent gives no way
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+void Team::tell(double now, const vehicle::VehicleState& own, const setpoints::SetpointStream* followed,
+                std::uint64_t plans) {
+  if (own.position_stamp < 0.0) return;
+  if (followed != nullptr && !followed->active()) followed = nullptr;
+  measure_deviation(now, own, followed);
+  if (plans == told_plans_ && now - last_told_ + 1e-6 < kPeriod) return;
+  last_told_ = now;
+  told_plans_ = plans;
+  Intent intent;
+  intent.vehicle = own_vehicle_;
+  intent.origin = own.origin;
+  intent.radius = radius_;
+  intent.margin = std::clamp(deviation_, followed == nullptr ? kUnledMargin : kLeastMargin, kMostMargin);
+  intent.path = shortened(committed(now, own, followed), now + kTold);
+  for (TimedPoint& point : intent.path) point.t -= now;
+  // What is not finite is not for others.
+  if (refusal(intent) != nullptr || !transport_.publish(intent)) ++untold_;
+}
+
+TimedPath Team::committed(double now, const vehicle::VehicleState& own,
+                          const setpoints::SetpointStream* followed) const {
+  const TimedPoint here{now, own.position, own.velocity, Vec3::Zero()};
+  if (followed == nullptr) {
+    if (!own.in_air) return {here};
+    return {here, {now + kDrift, own.position + kDrift * own.velocity, Vec3::Zero(), Vec3::Zero()}};
+  }
+  // In take-off the place to hold is a step away.
+  TimedPath path = followed->ahead(now);
+  const double way = (path.front().position - own.position).norm();
+  if (path.size() > 1 || way <= kOnTheWay) return path;
+  return {here, {now + way / kWaySpeed, path.front().position, Vec3::Zero(), Vec3::Zero()}};
+}
+
+void Team::measure_deviation(double now, const vehicle::VehicleState& own, const setpoints::SetpointStream* followed) {
+  const double error =
+      followed == nullptr ? 0.0 : (followed->reference(own.position_stamp).position - own.position).norm();
+  const double faded = deviation_at_ < 0.0 ? 0.0 : deviation_ * std::exp((deviation_at_ - now) / kForget);
+  deviation_ = std::max(error, faded);
+  deviation_at_ = now;
+}
+
+std::vector<Team::News> Team::news(double now) {
+  if (std::floor(now) != std::floor(last_news_)) {
+    const auto recurs = [&](std::uint64_t count, std::uint64_t& said, const char* name, const std::string& detail) {
+      if (count != std::exchange(said, count))
+        news_.push_back({name, detail + " (" + std::to_string(count) + " so far)"});
+    };
+    const IntentStatus status = transport_.status();
+    recurs(unplaced_, said_unplaced_, "team_unplaced", unplaced_why_);
+    recurs(late_, said_late_, "team_late", "intents came too late to be used");
+    recurs(crowded_, said_crowded_, "team_crowded",
+           "more than " + std::to_string(kMostVehicles) + " vehicles: the paths of the last are not regarded");
+    recurs(untold_, said_untold_, "team_untold", "where this vehicle will be could not be told");
+    recurs(status.refused, said_refused_, "team_refused", status.last_refusal);
+  }
+  last_news_ = now;
+  return std::exchange(news_, {});
+}
+
+std::size_t Team::vehicles() const {
+  return static_cast<std::size_t>(
+      std::count_if(peers_.begin(), peers_.end(), [](const auto& item) { return item.second.placed >= 0.0; }));
+}
+
+}  // namespace jink::bridge::team

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/tracking/clock_offset.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace jink::bridge::tracking {
+namespace {
+
+// s of stamp for each second of reception, below which a writer's stamps stand still
+constexpr double kStampRate = 0.1;
+
+}  // namespace
+
+std::optional<double> StampClock::delay(double received, double stamp_age) {
+  const double stamp = received - stamp_age;  // to within a constant
+  const bool first = std::exchange(first_, false);
+  const bool advanced = !first && stamp - stamp_ > kStampRate * (received - received_);
+  advances_ = advances_ || advanced;
+  smallest_age_ = first ? stamp_age : std::min(smallest_age_, stamp_age);
+  stamp_ = stamp;
+  received_ = received;
+  if (!first && !advances_) {
+    off_ = true;
+    return 0.0;
+  }
+  if (stamp_age - smallest_age_ > kLongestDelay) {
+    if (late_since_ < 0.0) late_since_ = received;
+    if (!advanced || received - late_since_ <= kLongestDelay) return std::nullopt;
+    smallest_age_ = stamp_age;
+  }
+  late_since_ = -1.0;
+  off_ = !(smallest_age_ >= 0.0 && smallest_age_ <= kLongestDelay);
+  return std::min(off_ ? stamp_age - smallest_age_ : stamp_age, kLongestDelay);
+}
+
+}  // namespace jink::bridge::tracking

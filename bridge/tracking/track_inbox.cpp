@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/tracking/track_inbox.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace jink::bridge::tracking {
+
+// Each comparison is false for NaN.
+const char* refusal(const planner::base::Track& t) {
+  using L = TrackLimits;
+  if (!(t.position.norm() <= L::kPosition)) return "position";
+  if (!(t.velocity.norm() <= L::kVelocity)) return "velocity";
+  if (!(t.acceleration.norm() <= L::kAcceleration)) return "acceleration";
+  if (!(t.radius > 0.0 && t.radius <= L::kRadius)) return "radius";
+  if (!(t.position_sigma >= 0.0 && t.position_sigma <= L::kSigma)) return "position_sigma";
+  if (!(t.velocity_sigma >= 0.0 && t.velocity_sigma <= L::kSigma)) return "velocity_sigma";
+  return nullptr;
+}
+
+TrackSieve::TrackSieve(TrackMessage& message, std::size_t stated) : message_(message), stated_(stated) {
+  message_.tracks.reserve(std::min(stated, TrackLimits::kTracksPerMessage));
+}
+
+void TrackSieve::add(const planner::base::Track& track) {
+  if (++added_ > TrackLimits::kTracksPerMessage) {
+    ++message_.dropped;
+  } else if (const char* bad = refusal(track); bad != nullptr) {
+    bad_what_ = bad;
+    bad_id_ = track.id;
+    ++message_.dropped;
+  } else {
+    message_.tracks.push_back(track);
+  }
+}
+
+std::string TrackSieve::why() const {
+  if (stated_ > TrackLimits::kTracksPerMessage) {
+    return "a message of " + std::to_string(stated_) + " tracks; at most " +
+           std::to_string(TrackLimits::kTracksPerMessage) + " are taken";
+  }
+  if (bad_what_ == nullptr) return {};
+  return "track " + std::to_string(bad_id_) + ": " + bad_what_ + " is not finite or out of range";
+}
+
+void TrackInbox::put(TrackMessage message, const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  if (queue_.size() == TrackLimits::kQueuedMessages) {
+    queue_.pop_front();
+    ++overruns_;
+  }
+  ++status_.messages;
+  status_.dropped_tracks += message.dropped;
+  if (!why.empty()) status_.last_refusal = why;
+  queue_.push_back(std::move(message));
+  if (wake_ != nullptr) wake_->notify();
+}
+
+void TrackInbox::notify(base::Wake& wake) {
+  const std::scoped_lock lock(mutex_);
+  wake_ = &wake;
+}
+
+void TrackInbox::refuse_frame(const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  ++status_.bad_frames;
+  status_.last_refusal = why;
+}
+
+bool TrackInbox::poll(TrackMessage& message) {
+  const std::scoped_lock lock(mutex_);
+  if (queue_.empty()) return false;
+  message = std::move(queue_.front());
+  queue_.pop_front();
+  return true;
+}
+
+TrackSourceStatus TrackInbox::status() const {
+  const std::scoped_lock lock(mutex_);
+  return status_;
+}
+
+std::uint64_t TrackInbox::overruns() const {
+  const std::scoped_lock lock(mutex_);
+  return overruns_;
+}
+
+}  // namespace jink::bridge::tracking

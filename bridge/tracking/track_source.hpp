@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where obstacle tracks come from. Two implementations: dds_tracks and the virtual-time source of sim/closed_loop.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridge/base/notifier.hpp"
+#include "planner/base/types.hpp"
+
+namespace jink::bridge::tracking {
+
+/// One message of one writer: all tracks that it now sees, in ENU.
+struct TrackMessage {
+  std::uint64_t writer = 0;  ///< stable identity of the writer
+  double received = 0.0;     ///< companion's clock, at reception
+  double stamp_age = 0.0;    ///< system time at reception minus the message's stamp; as measured, may be absurd
+  std::vector<planner::base::Track> tracks;
+  std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
+  bool watches = true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
+};
+
+/// What was refused at the door since the start; for events and summaries.
+struct TrackSourceStatus {
+  int writers = 0;                   ///< matched now
+  std::uint64_t messages = 0;        ///< accepted
+  std::uint64_t bad_frames = 0;      ///< messages refused for their frame_id
+  std::uint64_t dropped_tracks = 0;  ///< tracks left out for their values
+  std::uint64_t malformed = 0;       ///< payloads that could not be decoded
+  std::string last_refusal;          ///< why, of the newest refusal
+};
+
+class TrackSource {
+ public:
+  virtual ~TrackSource() = default;
+  /// Takes the oldest message not yet taken; false when there is none. Never blocks.
+  virtual bool poll(TrackMessage& message) = 0;
+  [[nodiscard]] virtual TrackSourceStatus status() const = 0;
+  /// From now on `wake`, which outlives the source, is notified when a message has come. Where nothing comes by itself
+  /// (virtual time) it does nothing.
+  virtual void notify(base::Wake& /*wake*/) {}
+};
+
+}  // namespace jink::bridge::tracking

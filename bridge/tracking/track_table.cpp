@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/tracking/track_table.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "bridge/tracking/track_inbox.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
+
+namespace jink::bridge::tracking {
+namespace {
+
+constexpr double kMoving = 0.05;     // m/s, above which a track that stands is not a new measurement
+constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velocity, at most, of its own track
+constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
+constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
+constexpr double kSelfLeaves = 1.5;  // times the distance that makes a track its own, at which it no longer is
+constexpr double kSelfSize = 3.0;    // times the vehicle's radius, that its own track may have
+
+// The first of its id keeps it, later ones are numbered on from the largest.
+void make_ids_unique(std::vector<planner::base::Track>& tracks) {
+  std::unordered_set<std::uint64_t> used;
+  used.reserve(tracks.size());
+  std::uint64_t last = 0;
+  for (const planner::base::Track& track : tracks) last = std::max(last, track.id);
+  for (planner::base::Track& track : tracks) {
+    while (!used.insert(track.id).second) track.id = ++last;
+  }
+}
+
+}  // namespace
+
+// How old the message's measurement was at reception; nothing where it is too old to say anything of the present.
+std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
+  Writer& writer = writers_[message.writer];
+  writer.received = message.received;
+  const std::optional<double> delay = writer.clock.delay(message.received, message.stamp_age);
+  if (delay && writer.clock.off()) ++counts_.clock_offsets;
+  return delay;
+}
+
+// What moves has not moved. Nothing where nothing moves.
+bool TrackTable::is_repetition(const TrackMessage& message) const {
+  const std::vector<Seen>& last = writers_.at(message.writer).last;
+  if (last.size() != message.tracks.size()) return false;
+  bool any = false;
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    const planner::base::Track& track = message.tracks[i];
+    if (!(track.velocity.norm() > kMoving)) continue;
+    if (last[i].id != track.id || last[i].position != track.position) return false;
+    any = true;
+  }
+  return any;
+}
+
+void TrackTable::remember(const TrackMessage& message) {
+  std::vector<Seen>& last = writers_.at(message.writer).last;
+  last.clear();
+  for (const planner::base::Track& track : message.tracks) last.push_back({track.id, track.position});
+}
+
+void TrackTable::ingest(const TrackMessage& message) {
+  const std::optional<double> delay = delay_of(message);
+  if (!delay) {
+    ++counts_.late_messages;
+    return;
+  }
+  if (is_repetition(message)) {
+    ++counts_.frozen_messages;
+    return;
+  }
+  remember(message);
+  const double measured = message.received - *delay;
+  if (message.watches) newest_message_ = std::max(newest_message_, message.received);
+  Writer& writer = writers_[message.writer];
+  writer.believed = message.received;
+  writer.watches = message.watches;
+  for (const planner::base::Track& track : message.tracks) {
+    if (refusal(track) != nullptr) {
+      ++counts_.invalid_tracks;
+      continue;
+    }
+    const Key key{message.writer, track.id};
+    auto known = entries_.find(key);
+    if (known == entries_.end()) {
+      if (entries_.size() >= kMost) forget(message.received);
+      if (entries_.size() >= kMost) {
+        ++counts_.surplus_tracks;
+        continue;
+      }
+      known = entries_.emplace(key, Entry{}).first;
+    }
+    Entry& entry = known->second;
+    if (entry.seen > 0.0 && measured < entry.measured) continue;  // overtaken on the way
+    take(entry, track, measured);
+    entry.seen = message.received;
+  }
+  learn(message, measured);
+}
+
+void TrackTable::take(Entry& entry, const planner::base::Track& measured, double t) {
+  entry.track = measured;
+  if (measured.position_sigma > 0.0 || measured.velocity_sigma > 0.0) {
+    if (!entry.filter) entry.filter = std::make_unique<prediction::ImmFilter>();
+    entry.filter->update(t - entry.measured, measured);
+    entry.filter->apply(entry.track);
+  } else {
+    entry.filter.reset();
+  }
+  entry.measured = t;
+}
+
+// The ways of the tracks about the vehicle; the fits of the nearest first.
+void TrackTable::learn(const TrackMessage& message, double t) {
+  if (!vehicle_) return;
+  struct Due {
+    double distance_squared;
+    const planner::base::Track* measured;
+    Entry* entry;
+  };
+  std::vector<Due> due;
+  for (const planner::base::Track& measured : message.tracks) {
+    const auto known = entries_.find({message.writer, measured.id});
+    if (known == entries_.end() || known->second.measured != t) continue;
+    Entry& entry = known->second;
+    const double distance_squared = (entry.track.position - *vehicle_).squaredNorm();
+    const bool near = distance_squared < kLearned * kLearned;
+    if (!near && entry.learned) {
+      entry.learned.reset();
+      --learned_;
+    }
+    if (near && !entry.learned && learned_ < kMostLearned) {
+      entry.learned = std::make_unique<prediction::LearnedTrack>();
+      ++learned_;
+    }
+    if (!entry.learned) continue;
+    entry.learned->observe(t, measured, entry.track, measured.id, room_);
+    if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
+  }
+  std::stable_sort(due.begin(), due.end(),
+                   [](const Due& a, const Due& b) { return a.distance_squared < b.distance_squared; });
+  if (due.size() > kFits) due.resize(kFits);
+  for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track);
+}
+
+bool TrackTable::puzzled(double speed) const {
+  if (!vehicle_) return false;
+  return std::any_of(entries_.begin(), entries_.end(), [&](const auto& item) {
+    const Entry& entry = item.second;
+    if (!entry.learned || entry.is_self || !entry.learned->puzzling(entry.measured)) return false;
+    const double reach = kMeeting * (speed + entry.track.velocity.norm());
+    return (entry.track.position - *vehicle_).squaredNorm() < reach * reach;
+  });
+}
+
+void TrackTable::forget(double now) {
+  std::erase_if(entries_, [&](const auto& item) {
+    const bool gone = now - item.second.seen > coast_s_;
+    if (gone && item.second.learned) --learned_;
+    return gone;
+  });
+  std::erase_if(writers_, [&](const auto& item) { return now - item.second.received > kForgetWriter; });
+}
+
+void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocity, double radius) {
+  own_tracks_ = 0;
+  vehicle_ = position;
+  for (auto& [key, entry] : entries_) {
+    const double age = std::max(0.0, now - entry.measured);
+    const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
+    const double near = (radius + doubt) * (entry.is_self ? kSelfLeaves : 1.0);
+    const bool here = (entry.track.position + age * entry.track.velocity - position).norm() < near &&
+                      (entry.track.velocity - velocity).norm() < kSelfSpeed && entry.track.radius <= kSelfSize * radius;
+    if (here && !entry.near_from) entry.near_from = position;
+    if (!here) entry.near_from.reset();
+    entry.is_self = here && (entry.is_self || (position - *entry.near_from).norm() > kSelfWay);
+    own_tracks_ += entry.is_self ? 1 : 0;
+  }
+}
+
+int TrackTable::live_writers(double now, double timeout_s) const {
+  return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
+    const Writer& writer = item.second;
+    return writer.watches && writer.believed >= 0.0 && now - writer.believed <= timeout_s;
+  }));
+}
+
+std::vector<planner::base::Track> TrackTable::predict(double now, double trust,
+                                                      std::vector<prediction::Forecast>* forecasts) {
+  forget(now);
+  std::vector<planner::base::Track> tracks;
+  tracks.reserve(entries_.size());
+  for (const auto& [key, entry] : entries_) {
+    if (entry.is_self) continue;
+    const double age = std::max(0.0, now - entry.measured);
+    planner::base::Track track = planner::geometry::predict(entry.track, age, trust);
+    track.age = age;
+    if (forecasts != nullptr && entry.learned) {
+      if (auto forecast = entry.learned->forecast(now, entry.measured, entry.track, room_)) {
+        forecast->track = tracks.size();
+        forecasts->push_back(std::move(*forecast));
+      }
+    }
+    tracks.push_back(track);
+  }
+  if (writers_.size() > 1) make_ids_unique(tracks);
+  return tracks;
+}
+
+}  // namespace jink::bridge::tracking

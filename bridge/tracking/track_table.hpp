@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is around now: the newest of every writer's tracks, predicted to the present, coasting when they go missing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/imm_filter.hpp"
+#include "bridge/prediction/motion_learner.hpp"
+#include "bridge/tracking/clock_offset.hpp"
+#include "bridge/tracking/track_source.hpp"
+#include "planner/base/types.hpp"
+
+namespace jink::bridge::tracking {
+
+/// What the table left out or corrected since the start; for events and summaries.
+struct TrackTableCounts {
+  std::uint64_t clock_offsets = 0;    ///< messages whose stamp could not be believed
+  std::uint64_t late_messages = 0;    ///< messages left out because they came too late
+  std::uint64_t frozen_messages = 0;  ///< messages left out because what moves had not moved since the one before
+  std::uint64_t invalid_tracks = 0;   ///< tracks left out: refusal() of track_inbox says why
+  std::uint64_t surplus_tracks = 0;   ///< tracks left out because the table was full
+};
+
+/// Tracks of several writers, each with its own identities; nothing is fused, so an obstacle that two writers see is
+/// avoided twice. Not thread-safe.
+class TrackTable {
+ public:
+  /// `coast_s`: how long a track lives on after the last message that held it.
+  explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
+
+  /// Takes in one message. The measurement's instant is the reception less the delay that the writer's StampClock
+  /// believes; a message that is too late for it is left out, as if it had not come.
+  ///
+  /// A message in which every track that should have moved stands where it stood in the one before, to the last bit, is
+  /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
+  void ingest(const TrackMessage& message);
+
+  /// Finds tracks that are the vehicle itself, as a tracker reports them that sees it too: no larger than a few times
+  /// `radius`, within that of `position` at nearly its velocity, for kSelfWay of its way. predict() leaves them out for
+  /// as long as they stay there. What only stands beside a vehicle that hangs there is never taken for it. To be called
+  /// when messages came in.
+  void find_self(double now, const Vec3& position, const Vec3& velocity, double radius);
+
+  /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
+  /// Their age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use
+  /// the same. `forecasts`, where given, gets what has been learned of their ways, valid at `now` too.
+  std::vector<planner::base::Track> predict(double now, double trust,
+                                            std::vector<prediction::Forecast>* forecasts = nullptr);
+
+  /// Whether a track that the vehicle could meet within kMeeting at `speed` moves in a way that is not understood yet
+  /// (LearnedTrack::puzzling). As of the last messages.
+  [[nodiscard]] bool puzzled(double speed) const;
+
+  /// Reception of the newest message of any writer that watches; negative: none yet.
+  [[nodiscard]] double newest_message() const { return newest_message_; }
+  [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
+  /// Living tracks that are taken for the vehicle itself.
+  [[nodiscard]] int own_tracks() const { return own_tracks_; }
+  /// Writers that watch and whose newest believed message is no older than `timeout_s`.
+  [[nodiscard]] int live_writers(double now, double timeout_s) const;
+
+  static constexpr std::size_t kMost = 20000;       ///< living tracks
+  static constexpr std::size_t kMostLearned = 400;  ///< tracks whose ways are learned at a time
+  static constexpr double kLearned = 40.0;          ///< m, from the vehicle's place, of these
+  static constexpr int kFits = 8;                   ///< for a message, at most
+  static constexpr double kMeeting = 2.0;           ///< s
+  static constexpr double kSelfWay = 1.0;           ///< m
+  static constexpr double kForgetWriter = 60.0;     ///< s of silence, after which a writer is taken for ended
+
+ private:
+  struct Entry {
+    planner::base::Track track;                         // as estimated from the measurements
+    double measured = 0.0;                              // companion's clock
+    std::unique_ptr<prediction::ImmFilter> filter;      // of a track that is measured with noise
+    std::unique_ptr<prediction::LearnedTrack> learned;  // of a track that is near enough
+    double seen = 0.0;                                  // reception of the last message that held it
+    std::optional<Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
+    bool is_self = false;
+  };
+  struct Seen {
+    std::uint64_t id = 0;
+    Vec3 position;
+  };
+  struct Writer {
+    StampClock clock;
+    std::vector<Seen> last;  // what the newest message that was taken in held
+    double received = 0.0;
+    double believed = -1.0;  // reception of the newest message that was taken in
+    bool watches = true;
+  };
+  std::optional<double> delay_of(const TrackMessage& message);
+  [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
+  void remember(const TrackMessage& message);
+  void take(Entry& entry, const planner::base::Track& measured, double t);
+  void learn(const TrackMessage& message, double t);
+  void forget(double now);
+
+  using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
+
+  double coast_s_;
+  double newest_message_ = -1.0;
+  TrackTableCounts counts_;
+  int own_tracks_ = 0;
+  std::map<std::uint64_t, Writer> writers_;
+  std::map<Key, Entry> entries_;
+  std::optional<Vec3> vehicle_;  // where it was last
+  prediction::LearnedRoom room_;
+  std::size_t learned_ = 0;  // tracks
+};
+
+}  // namespace jink::bridge::tracking

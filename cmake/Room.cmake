@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# jink_room([LINK targets...] [PRIVATE targets...] [SOURCES generated files...])
+# Makes the library of the folder it is called in: bridge/tracking gives jink::bridge::tracking, of all *.cpp there.
+# A room sees the headers of the rooms that it links and no others: each has an include folder of its own, which holds a
+# link to the room under its full path. LINK: what its headers use as well. PRIVATE: what its sources alone use.
+function(jink_room)
+  cmake_parse_arguments(R "" "" "LINK;PRIVATE;SOURCES" ${ARGN})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" name ${folder})
+  string(REPLACE "/" "::" alias ${folder})
+  set(include ${PROJECT_BINARY_DIR}/rooms/${name})
+  get_filename_component(parent ${include}/${folder} DIRECTORY)
+  file(MAKE_DIRECTORY ${parent})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include}/${folder} SYMBOLIC)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  if(sources)
+    add_library(jink_${name} STATIC ${sources} ${R_SOURCES})
+    target_include_directories(jink_${name} PUBLIC ${include})
+    target_link_libraries(jink_${name} PUBLIC ${R_LINK} PRIVATE ${R_PRIVATE} jink_options)
+  else()
+    add_library(jink_${name} INTERFACE)
+    target_include_directories(jink_${name} INTERFACE ${include})
+    target_link_libraries(jink_${name} INTERFACE ${R_LINK})
+  endif()
+  add_library(jink::${alias} ALIAS jink_${name})
+endfunction()

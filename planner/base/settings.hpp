@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every parameter of the planner with its one default. config/planner.yaml shows the same values; a test keeps them
+// equal.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace jink::planner::base {
+
+/// Which collision constraint the paper-mode problem uses.
+enum class Constraint {
+  kPaper,  ///< the discriminant of [Paper] Eq. (14): infinite line, obstacle frozen
+  kSwept   ///< both move during the segment
+};
+
+/// The axis along which the paper-mode problem places its waypoints.
+enum class Axis {
+  kWorldX,  ///< the world's X as [Paper] Figure 1 has it; needs start and target to differ enough in x
+  kPath     ///< from start to target
+};
+
+/// How universes move, [Paper] Eq. (18) and (20).
+enum class Operators {
+  kPrinted,    ///< as the paper prints them
+  kCommon,     ///< the step of the circulating MOMVO code, which depends on where the origin is; Eq. (20) mended
+  kCorrected,  ///< mended, see planner/multiverse.hpp
+  kAdaptive    ///< corrected, and a second kind of move, narrow; the kind that succeeds is drawn more often
+};
+
+/// MOMVO and PMOMVO, [Paper] Algorithms 1 and 2.
+struct OptimizerSettings {
+  int slaves = 6;             ///< m, sub-swarms
+  int sharing = 9;            ///< l, sharings; the iterations are split in l + 1 cycles
+  int population = 50;        ///< n_pop, universes of all slaves together
+  int iterations = 100;       ///< n_iter
+  int archive = 100;          ///< capacity of each archive
+  double wep_min = 0.2;       ///< rho_min of Eq. (19)
+  double wep_max = 1.0;       ///< rho_max of Eq. (19)
+  double exploitation = 6.0;  ///< gamma of Eq. (20)
+  Operators operators = Operators::kAdaptive;
+  double focus = 0.7;       ///< probability that a narrow move starts from the best in the first objective
+  bool opposition = false;  ///< whether random universes come in opposite pairs
+};
+
+/// The paper's problem: one waypoint at a time along the axis.
+struct PaperSettings {
+  int waypoints = 20;  ///< including start and target
+  Constraint constraint = Constraint::kSwept;
+  Axis axis = Axis::kWorldX;
+  double steering_limit_deg = 60.0;  ///< phi_max of Eq. (3)
+  double penalty = 1000.0;           ///< lambda of Eq. (17)
+  double lateral_range = 4.0;        ///< half width of the search box about the straight line
+  double narrow_gap = 0.52;          ///< delta_narrow: surface gap below which a pair gets a virtual sphere, Eq. (15)
+  double narrow_altitude = 0.3;      ///< altitude difference up to which two obstacles count as level
+  double margin = 0.05;              ///< added to the sum of radii
+};
+
+/// The remaining path at once, replanned in flight.
+struct HorizonSettings {
+  int waypoints = 6;  ///< K
+  double time = 6.0;  ///< looked ahead; the rest is straight
+  double step = 0.1;  ///< between points of the timed path
+  int slaves = 4;
+  int sharing = 3;
+  int population = 48;
+  int generations = 100;             ///< budget of one plan in virtual time, and the upper bound in real time
+  double deadline_ms = 20.0;         ///< budget of one plan in real time
+  double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
+  double back_range = 2.0;           ///< how far they may fall back behind the start
+  double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them
+  double emergency_share = 0.9;      ///< the same where nothing else keeps the margin
+  double acceleration_limit = 10.0;  ///< as which a higher limit counts, m/s²: a tilt of 45 degrees
+  double braking = 2.0;              ///< deceleration planned towards a stop, m/s²
+  double margin = 0.35;              ///< kept from every obstacle on top of the radii, for the tracking error
+  double sigma_factor = 2.0;         ///< standard deviations of a track's position that clearance is asked for
+  double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
+  double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
+  double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
+  double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
+  double deviation_weight = 0.3;     ///< of the mean distance from undisturbed flight, in the length objective
+  double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this fraction are not chosen
+  double weight_length = 0.6;  ///< modified TOPSIS
+  double weight_steering = 0.05;
+  double weight_clearance = 0.35;
+  bool seeding = true;       ///< whether the search starts from manoeuvres
+  double keep_ratio = 0.05;  ///< a previous plan is kept unless a new one is better by this fraction
+
+  /// The same settings, of more acceleration.
+  [[nodiscard]] HorizonSettings for_emergencies() const {
+    HorizonSettings result = *this;
+    result.acceleration_share = std::max(acceleration_share, emergency_share);
+    return result;
+  }
+  /// The most that plans use for a vehicle with this limit, m/s².
+  [[nodiscard]] double planned_acceleration(double max_acceleration) const {
+    return acceleration_share * std::min(max_acceleration, acceleration_limit);
+  }
+};
+
+}  // namespace jink::planner::base

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The value types that every module shares. Frame: local ENU, metres, seconds, radians, z up.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+
+namespace jink {
+
+/// A point or a vector in a frame that its name or its owner tells; local ENU unless said otherwise.
+using Vec3 = Eigen::Vector3d;
+
+}  // namespace jink
+
+namespace jink::planner::base {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// An axis-aligned volume, bounds included. The default is unbounded.
+struct Box {
+  Vec3 min = Vec3::Constant(-kInfinity);
+  Vec3 max = Vec3::Constant(kInfinity);
+
+  [[nodiscard]] bool contains(const Vec3& p, double tolerance = 0.0) const {
+    return ((p - min).array() >= -tolerance).all() && ((max - p).array() >= -tolerance).all();
+  }
+};
+
+/// What a vehicle is and can do. The defaults are the Parrot AR.Drone 2.0's of config/vehicles/ardrone2.yaml.
+struct VehicleLimits {
+  double radius = 0.30;           ///< of the sphere that encloses the vehicle
+  double length = 0.52;           ///< l_uav of [Paper] Eq. (15)
+  double mass = 0.42;             ///< kg, [Paper] Eq. (1)
+  double max_speed = 5.0;         ///< Euclidean norm of the velocity
+  double cruise_speed = 3.0;      ///< flown where nothing asks for another speed
+  double max_acceleration = 6.0;  ///< Euclidean norm
+  double max_jerk = 30.0;         ///< Euclidean norm
+  double max_climb = 2.0;         ///< |vertical speed|, up and down
+};
+
+/// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion.
+struct Track {
+  std::uint64_t id = 0;
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 acceleration = Vec3::Zero();
+  double radius = 0.0;
+  double position_sigma = 0.0;  ///< standard deviation of the position, per axis
+  double velocity_sigma = 0.0;  ///< standard deviation of the velocity, per axis
+  double age = 0.0;             ///< time since the measurement that this is predicted from
+};
+
+}  // namespace jink::planner::base

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/horizon_planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/initial_paths.hpp"
+#include "planner/optimizer/pmomvo.hpp"
+#include "planner/optimizer/topsis.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
+constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
+constexpr double kSeedClearance = 0.2;     // m, that manoeuvres aim for beyond the margin: the vehicle cuts corners
+
+base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
+  o.slaves = s.slaves;
+  o.sharing = s.sharing;
+  o.population = s.population;
+  o.iterations = s.generations;
+  return o;
+}
+
+bool finite(const PathRequest& request) {
+  return request.position.allFinite() && request.velocity.allFinite() && request.target.allFinite() &&
+         std::all_of(request.tracks.begin(), request.tracks.end(),
+                     [](const base::Track& t) {
+                       return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
+                              std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
+                     }) &&
+         std::all_of(request.paths.begin(), request.paths.end(),
+                     [](const geometry::KnownPath& p) { return p.well_formed(); });
+}
+
+/// Checks a path up to a time; a path that ends before waits at its end.
+verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {
+  const auto check = [&](std::span<const base::TimedPoint> points) {
+    return verify::verify({points, request.tracks, 0.0, request.vehicle.radius, request.volume,
+                           request.acceleration_trust, until, request.paths});
+  };
+  if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
+  base::TimedPath waiting = path;
+  waiting.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
+  return check(waiting);
+}
+
+/// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
+/// the verifier's accuracy), then the softer contact.
+bool less_harm(const verify::Verification& a, const verify::Verification& b) {
+  if (a.free() != b.free()) return a.free();
+  if (a.valid != b.valid) return a.valid;
+  if (a.free()) return a.min_clearance > b.min_clearance;
+  if (a.inside_volume != b.inside_volume && !a.first_contact) return a.inside_volume;
+  const double until_a = a.first_contact.value_or(base::kInfinity);
+  const double until_b = b.first_contact.value_or(base::kInfinity);
+  if (std::abs(until_a - until_b) > 1e-6) return until_a > until_b;
+  return a.contact_speed < b.contact_speed;
+}
+
+base::TimedPath undisturbed(const PathProblem& problem) {
+  return problem.motion(std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0));
+}
+
+/// What a verified horizon and the whole path's check amount to.
+void conclude(const PathRequest& request, double horizon, verify::Plan& plan) {
+  if (!plan.verification.free()) {
+    plan.status = verify::PlanStatus::kBlocked;
+    return;
+  }
+  plan.status = verify::PlanStatus::kProgresses;
+  const bool arrives = (plan.path.back().position - request.target).norm() < 1e-6;
+  if (!arrives) return;
+  if (plan.path.back().t <= horizon) {
+    plan.status = verify::PlanStatus::kReaches;
+    return;
+  }
+  const verify::Verification whole = verify_until(plan.path, request, base::kInfinity);
+  if (whole.free()) {
+    plan.status = verify::PlanStatus::kReaches;
+    plan.verification = whole;
+  }
+}
+
+}  // namespace
+
+std::vector<double> start_solutions(const PathProblem& problem, const PathRequest& request,
+                                    const base::TimedPath& previous, const base::HorizonSettings& settings) {
+  const auto d = static_cast<std::size_t>(problem.dimension());
+  std::vector<double> initial(d, 0.0);
+  const base::TimedPath straight = undisturbed(problem);
+  const auto add = [&](const base::TimedPath& path) {
+    initial.resize(initial.size() + d);
+    problem.imitate(path, {initial.data() + initial.size() - d, d});
+  };
+  if (!previous.empty()) add(previous);
+  if (!settings.seeding) return initial;
+  std::vector<double> times;
+  for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
+  for (const base::TimedPath& path : manoeuvres(request, straight, times, request.margin + kSeedClearance)) add(path);
+  return initial;
+}
+
+HorizonPlanner::HorizonPlanner(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
+                               const optimizer::MakeOptimizer& make)
+    : settings_(settings), problem_(settings), emergency_(settings.for_emergencies()) {
+  const base::OptimizerSettings size = sized(optimizer, settings);
+  const auto [d, n] = std::pair(problem_.dimension(), problem_.objectives());
+  optimizer_ = make ? make(size, d, n) : std::make_unique<optimizer::Pmomvo>(size, d, n);
+}
+
+verify::Plan HorizonPlanner::plan(const PathRequest& request, const base::TimedPath& previous, std::uint64_t seed,
+                                  std::uint64_t number, const base::Budget& budget, base::WorkerPool& pool) {
+  return make(request, previous, {seed, number}, {budget, budget}, pool);
+}
+
+verify::Plan HorizonPlanner::repeat(const PathRequest& request, const base::TimedPath& previous, std::uint64_t seed,
+                                    std::uint64_t number, const std::array<verify::SearchExtent, 2>& searches,
+                                    base::WorkerPool& pool) {
+  const auto budget = [](const verify::SearchExtent& s) {
+    return base::Budget{s.schedule, base::Budget::Time::max(), s.generations};
+  };
+  // A plan that needed no search may need one with other settings or inputs.
+  const base::Budget first = searches[0].schedule > 0 ? budget(searches[0]) : base::Budget{settings_.generations};
+  return make(request, previous, {seed, number}, {first, searches[1].schedule > 0 ? budget(searches[1]) : first}, pool);
+}
+
+verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedPath& previous, const Random& random,
+                                  const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool) {
+  if (!finite(request)) return {};
+  problem_.prepare(request);
+  if (std::optional<verify::Plan> settled = without_search(request, previous)) return *std::move(settled);
+  const std::optional<Vec3> via = request.stuck ? around(request) : std::nullopt;
+  if (via) problem_.prepare(request, via);
+  verify::Plan plan = search(problem_, request, previous, random, budgets[0], pool);
+  std::array<verify::SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
+  if (!previous.empty()) keep_previous(request, previous, plan);
+  const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
+  if (!safe && settings_.emergency_share > settings_.acceleration_share) {
+    emergency_.prepare(request, via);
+    verify::Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
+    searches[1] = {harder.schedule, harder.generations};
+    plan.evaluations += harder.evaluations;
+    if (less_harm(harder.verification, plan.verification)) {
+      harder.evaluations = plan.evaluations;
+      harder.emergency = true;
+      plan = std::move(harder);
+    }
+  }
+  plan.searches = searches;
+  conclude(request, problem_.horizon(), plan);
+  return plan;
+}
+
+// Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
+// else to wait for a wall to go away is for ever cheaper than to fly to its hole.
+std::optional<Vec3> HorizonPlanner::around(const PathRequest& request) const {
+  return way_on(request, undisturbed(problem_), problem_.horizon(), request.margin + kSeedClearance);
+}
+
+// No path is shorter than undisturbed flight, none has less of the last objective than nothing: where undisturbed
+// flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
+// whatever a search found, it is kept.
+std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& request,
+                                                           const base::TimedPath& previous) const {
+  verify::Plan plan;
+  plan.path = undisturbed(problem_);
+  const optimizer::Cost ideal = problem_.cost_of(plan.path);
+  const auto settle = [&](verify::Plan& settled) {
+    settled.verification = verify_until(settled.path, request, problem_.horizon());
+    if (!settled.verification.free() || settled.verification.min_clearance < request.margin) return false;
+    conclude(request, problem_.horizon(), settled);
+    return true;
+  };
+  if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
+  if (previous.empty()) return std::nullopt;
+  const optimizer::Cost cost = problem_.cost_of(previous);
+  const double slack = settings_.keep_ratio;
+  if (cost.violation > 0.0 || cost.f[0] > ideal.f[0] * (1.0 + slack) || cost.f[2] > slack) return std::nullopt;
+  verify::Plan kept;
+  kept.path = base::remainder(previous, 0.0);
+  kept.kept_previous = true;
+  if (!settle(kept)) return std::nullopt;
+  return kept;
+}
+
+verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
+                                    const Random& random, const base::Budget& budget, base::WorkerPool& pool) {
+  initial_ = start_solutions(problem, request, previous, settings_);
+  base::Budget affordable = budget;
+  affordable.generations = affordable_generations(budget);
+  const auto begun = std::chrono::steady_clock::now();
+  const optimizer::Front& front = optimizer_->run(problem, initial_, random.seed, random.stream, affordable, pool);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  pace_ = took.count() / optimizer_->report().generations;
+  verify::Plan plan = choose(problem, request, front);
+  plan.evaluations = optimizer_->report().evaluations;
+  plan.generations = optimizer_->report().generations;
+  plan.schedule = affordable.generations;
+  plan.deadline_reached = optimizer_->report().deadline_reached;
+  for (const optimizer::Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
+  return plan;
+}
+
+// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
+int HorizonPlanner::affordable_generations(const base::Budget& budget) const {
+  if (!budget.has_deadline() || pace_ <= 0.0) return budget.generations;
+  const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
+  return std::clamp(static_cast<int>(std::min(kDeadlineShare * left.count() / pace_, 1e6)), 1, budget.generations);
+}
+
+// TOPSIS looks for a compromise between the front's extremes, and a front's far end is no measure of what a detour may
+// cost: what is much longer than need be counts as violating, by how much.
+std::vector<optimizer::Cost> HorizonPlanner::banded(std::span<const optimizer::Cost> costs) const {
+  double shortest = base::kInfinity;
+  for (const optimizer::Cost& cost : costs) {
+    if (cost.violation == 0.0) shortest = std::min(shortest, cost.f[0]);
+  }
+  std::vector<optimizer::Cost> result(costs.begin(), costs.end());
+  for (optimizer::Cost& cost : result) {
+    if (cost.violation == 0.0) cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest);
+  }
+  return result;
+}
+
+verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathRequest& request,
+                                    const optimizer::Front& front) const {
+  // Of a vehicle that is stuck the plan that gets on is chosen, not the one that turns least: that one waits.
+  std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
+  if (request.stuck) weights = {1.0, 0.0, 0.0};
+  const std::vector<int> order = optimizer::topsis_order(banded(front.costs), problem.objectives(), weights);
+  verify::Plan best;
+  // True where there is nothing left to look for.
+  const auto consider = [&](std::span<const double> x, bool feasible) {
+    verify::Plan plan;
+    plan.path = problem.motion(x);
+    plan.verification = verify_until(plan.path, request, problem.horizon());
+    const bool good = feasible && plan.verification.free();
+    if (good || best.path.empty() || less_harm(plan.verification, best.verification)) best = std::move(plan);
+    return good;
+  };
+  for (std::size_t i = 0; i < std::min(order.size(), kMostVerified); ++i) {
+    const auto candidate = static_cast<std::size_t>(order[i]);
+    if (consider(front.solution(candidate), front.costs[candidate].violation == 0.0)) return best;
+  }
+  // The optimizer measures how deep and how long, harm is measured in when and how hard: the first ideas count too.
+  const auto d = static_cast<std::size_t>(problem.dimension());
+  for (std::size_t at = 0; at < initial_.size() && !best.verification.free(); at += d) {
+    consider(std::span(initial_).subspan(at, d), false);
+  }
+  return best;
+}
+
+void HorizonPlanner::keep_previous(const PathRequest& request, const base::TimedPath& previous,
+                                   verify::Plan& plan) const {
+  const optimizer::Cost old_cost = problem_.cost_of(previous);
+  const optimizer::Cost new_cost = problem_.cost_of(plan.path);
+  verify::Plan old;
+  old.path = base::remainder(previous, 0.0);
+  old.verification = verify_until(old.path, request, problem_.horizon());
+  bool keep = false;
+  if (old_cost.violation == 0.0 && old.verification.free()) {
+    const double slack = settings_.keep_ratio;
+    keep = new_cost.violation > 0.0 || !plan.verification.free() ||
+           new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
+           (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
+  } else if (new_cost.violation > 0.0 || !plan.verification.free()) {
+    keep = less_harm(old.verification, plan.verification);
+  }
+  if (!keep) return;
+  plan.path = std::move(old.path);
+  plan.verification = old.verification;
+  plan.kept_previous = true;
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pilot would try first: rough paths that the optimizer starts from. Nothing here is checked or promised free.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "planner/base/settings.hpp"
+#include "planner/base/trajectory.hpp"
+#include "planner/horizon/path_problem.hpp"
+
+namespace jink::planner::horizon {
+
+/// Paths from the request's state, one point at each time of `times` (rising, s):
+/// - through the clearest places across the path where the first obstacle is met (openings()), at three times, waiting
+///   before it until then;
+/// - undisturbed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
+/// - lanes beside, above and below it, left again towards the end;
+/// - for each of the first obstacles that undisturbed flight meets, the displacements that lead just past it in
+///   relative motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far
+///   side, and between them, taken around the time of the encounter; and a stop short of it.
+/// `undisturbed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
+/// is to be kept from an obstacle's surface. O(obstacles · points).
+std::vector<base::TimedPath> manoeuvres(const PathRequest& request, const base::TimedPath& undisturbed,
+                                        std::span<const double> times, double clearance);
+
+/// The opening through which the way leads on, where undisturbed flight is met until `until`: as manoeuvres() looks for
+/// it, at that time. Nothing where no place there keeps `clearance`, or nothing is met.
+std::optional<Vec3> way_on(const PathRequest& request, const base::TimedPath& undisturbed, double until,
+                           double clearance);
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/nearby_obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/geometry/obstacle_motion.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr std::size_t kGroup = 8;  // steps tested at once
+// m, added to what is tested for, far above rounding: an obstacle left out would have added exactly nothing.
+constexpr double kSlack = 1e-6;
+
+double squared_distance(const Vec3& p, const base::Box& box) {
+  return (p - p.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();
+}
+
+base::Box united(const base::Box& a, const base::Box& b) {
+  return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
+}
+
+/// How an obstacle on a track moves.
+class TrackMotion {
+ public:
+  TrackMotion(const base::Track& track, double trust) : track_(track), trust_(trust) {}
+
+  [[nodiscard]] Vec3 position(double t) const { return geometry::predict_position(track_, t, trust_); }
+  /// The largest speed within the first `time` seconds: the velocity changes along a line, so it is one end's.
+  [[nodiscard]] double fastest(double time) const {
+    return std::sqrt(
+        std::max(track_.velocity.squaredNorm(), geometry::predict_velocity(track_, time, trust_).squaredNorm()));
+  }
+  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] double until() const { return base::kInfinity; }
+  /// How far it strays from even motion between two instants. differs: that an accelerated track does so, by at most
+  /// an eighth of its acceleration times step², is left to the margin.
+  [[nodiscard]] double bend(double /*begin*/, double /*end*/) const { return 0.0; }
+  /// A bound of bend() for any two instants that are `step` apart.
+  [[nodiscard]] double most_bend(double /*step*/) const { return 0.0; }
+  /// Clearance asked for on top of the hard distance after t seconds.
+  [[nodiscard]] double uncertainty(const Clearance& clearance, double t) const {
+    const double ahead = t + track_.age;
+    const double moved = track_.velocity_sigma * ahead;
+    const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
+    return std::min(clearance.limit,
+                    clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead);
+  }
+
+ private:
+  const base::Track& track_;
+  double trust_;
+};
+
+/// The same of one on a known path.
+class PathMotion {
+ public:
+  explicit PathMotion(const geometry::KnownPath& path) : path_(path), fastest_(path.fastest()) {}
+
+  [[nodiscard]] Vec3 position(double t) const { return path_.position(t); }
+  [[nodiscard]] double fastest(double /*time*/) const { return fastest_; }
+  [[nodiscard]] double radius() const { return path_.radius + path_.margin; }
+  [[nodiscard]] double until() const { return path_.until; }
+  /// Both the path and even motion are straight between the path's points, so they are farthest apart at one of them.
+  [[nodiscard]] double bend(double begin, double end) const {
+    const base::TimedPath& points = path_.points;
+    const Vec3 from = position(begin);
+    const Vec3 velocity = (position(end) - from) / (end - begin);
+    const auto later = [](double t, const base::TimedPoint& point) { return t < point.t; };
+    double most = 0.0;
+    for (auto p = std::upper_bound(points.begin(), points.end(), begin + path_.offset, later);
+         p != points.end() && p->t < end + path_.offset; ++p) {
+      most = std::max(most, (p->position - from - (p->t - path_.offset - begin) * velocity).norm());
+    }
+    return most;
+  }
+  /// From the nearer end of the step both have come at most half a step at the largest speed.
+  [[nodiscard]] double most_bend(double step) const { return fastest_ * step; }
+  [[nodiscard]] double uncertainty(const Clearance& clearance, double t) const {
+    const double moved = path_.velocity_sigma * (t + path_.age);
+    const double sigma = std::sqrt(path_.position_sigma * path_.position_sigma + moved * moved);
+    const double after = std::max(0.0, t + path_.offset - path_.points.back().t);
+    return std::min(clearance.limit,
+                    clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
+  }
+
+ private:
+  const geometry::KnownPath& path_;
+  double fastest_;
+};
+
+}  // namespace
+
+void MetObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
+                         const Clearance& clearance, double step, std::span<const base::Box> where) {
+  groups_.clear();
+  found_.clear();
+  step_.clear();
+  obstacles_ = 0;
+  base::Box everywhere = where.front();
+  for (std::size_t first = 0; first < where.size(); first += kGroup) {
+    Group group{first, std::min(first + kGroup, where.size()), where[first]};
+    for (std::size_t n = group.first; n < group.last; ++n) group.where = united(group.where, where[n]);
+    everywhere = united(everywhere, group.where);
+    groups_.push_back(group);
+  }
+  for (const base::Track& track : tracks) {
+    add(TrackMotion(track, clearance.acceleration_trust), clearance, step, where, everywhere);
+  }
+  for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, where, everywhere);
+
+  begin_.assign(where.size() + 1, 0);
+  for (const std::size_t n : step_) ++begin_[n + 1];
+  for (std::size_t n = 0; n < where.size(); ++n) begin_[n + 1] += begin_[n];
+  next_ = begin_;
+  met_.resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) met_[next_[step_[i]]++] = found_[i];
+}
+
+template <typename Motion>
+void MetObstacles::add(const Motion& motion, const Clearance& clearance, double step, std::span<const base::Box> where,
+                       const base::Box& everywhere) {
+  const double horizon = step * static_cast<double>(where.size());
+  const double speed = motion.fastest(horizon);
+  const double hard = motion.radius() + clearance.hard;
+  const double most_bend = motion.most_bend(step);
+  const double ever = hard + clearance.limit + speed * horizon + most_bend + kSlack;
+  if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;
+  const std::size_t before = found_.size();
+  for (const Group& group : groups_) {
+    const double begin = step * static_cast<double>(group.first);
+    if (begin >= motion.until()) break;
+    const double half = 0.5 * step * static_cast<double>(group.last - group.first);
+    const double wanted = hard + clearance.limit + speed * half + most_bend + kSlack;
+    if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
+    MetObstacle obstacle;
+    obstacle.to = motion.position(begin);
+    for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
+      const double end = static_cast<double>(n + 1) * step;
+      obstacle.from = obstacle.to;
+      obstacle.to = motion.position(end);
+      obstacle.middle = 0.5 * (obstacle.from + obstacle.to);
+      const double moved = 0.5 * (obstacle.to - obstacle.from).norm();
+      const double bent = hard + motion.bend(static_cast<double>(n) * step, end);
+      const double most = bent + clearance.limit + moved + kSlack;
+      const double distance = squared_distance(obstacle.middle, where[n]);
+      if (distance >= most * most) continue;
+      obstacle.hard = bent;
+      obstacle.soft = bent + motion.uncertainty(clearance, end);
+      obstacle.near = obstacle.soft + moved + kSlack;
+      obstacle.near_squared = obstacle.near * obstacle.near;
+      if (distance >= obstacle.near_squared) continue;
+      found_.push_back(obstacle);
+      step_.push_back(n);
+    }
+  }
+  if (found_.size() > before) ++obstacles_;
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which obstacles can be met during each step of a horizon, and how they move then.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "planner/base/types.hpp"
+#include "planner/geometry/known_path.hpp"
+
+namespace jink::planner::horizon {
+
+/// What an obstacle is worth keeping away from: its radius and `hard` more, and `soft` beyond that as its track's
+/// uncertainty asks for.
+struct Clearance {
+  double hard = 0.0;                            ///< the vehicle's radius and the margin
+  double sigma_factor = 0.0;                    ///< standard deviations of the position that are kept free
+  double track_acceleration = 0.0;              ///< what a track's acceleration may be off by, m/s²
+  double limit = 0.0;                           ///< the most that uncertainty may ask for
+  double acceleration_trust = base::kInfinity;  ///< as in predict_position
+};
+
+/// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
+/// as much as it strays from even motion.
+struct MetObstacle {
+  Vec3 from, to;                  ///< its centre when the step begins and ends
+  Vec3 middle;                    ///< halfway
+  double hard = 0.0, soft = 0.0;  ///< distances of the centres that are asked for: never less, better not less
+  double near = 0.0;              ///< from the middle: farther away, the soft distance is kept throughout the step
+  double near_squared = 0.0;      ///< near²
+};
+
+/// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
+/// thread-safe while build() runs; keeps its memory from one build to the next.
+class MetObstacles {
+ public:
+  /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
+  /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
+  /// the known paths), and for each near known path O(steps · log(points)).
+  void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
+             const Clearance& clearance, double step, std::span<const base::Box> where);
+
+  [[nodiscard]] std::span<const MetObstacle> during(int step) const {
+    const auto n = static_cast<std::size_t>(step);
+    return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
+  }
+  /// How many tracks and known paths are met in at least one step.
+  [[nodiscard]] std::size_t obstacles() const { return obstacles_; }
+
+ private:
+  /// A number of steps, and where the vehicle is during all of them.
+  struct Group {
+    std::size_t first = 0, last = 0;
+    base::Box where;
+  };
+  template <typename Motion>
+  void add(const Motion& motion, const Clearance& clearance, double step, std::span<const base::Box> where,
+           const base::Box& everywhere);
+
+  std::vector<Group> groups_;
+  std::vector<MetObstacle> found_, met_;  // by track, and by step
+  std::vector<std::size_t> step_;         // of each found
+  std::vector<std::size_t> begin_;        // of each step in met_, and the end
+  std::vector<std::size_t> next_;
+  std::size_t obstacles_ = 0;
+};
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Horizon mode for a world that is taken as known: the whole path at once, for `jink plan`.
+#pragma once
+
+#include <cstdint>
+
+#include "planner/base/budget.hpp"
+#include "planner/base/settings.hpp"
+#include "planner/base/worker_pool.hpp"
+#include "planner/horizon/path_problem.hpp"
+#include "planner/optimizer/optimizer.hpp"
+#include "planner/verify/plan.hpp"
+
+namespace jink::planner::horizon {
+
+struct OpenLoopRequest {
+  PathRequest path;         ///< from rest at the start; tracks valid at t = 0
+  double time_limit = 0.0;  ///< the path is cut here
+  double commit = 0.5;      ///< how much of each plan is kept before planning on
+};
+
+/// One plan after the other along the path itself, the obstacles extrapolated from t = 0. The shortest path is asked
+/// for: lost time and deviation from undisturbed flight only decide between paths of nearly equal length. A vehicle
+/// that may wait for nothing can wait too long, so where that path does not arrive a second one is planned with
+/// `settings` as they are, and the better one returned: the one that arrives, then the one that is free, then the one
+/// that comes nearer. `budget` is that of each plan, its deadline that of all.
+///
+/// The finished path is verified: kReaches only where all of it is free and it ends at the target within the time
+/// limit. `make` and what is thrown: as for HorizonPlanner.
+verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
+                            const OpenLoopRequest& request, std::uint64_t seed, const base::Budget& budget,
+                            base::WorkerPool& pool, const optimizer::MakeOptimizer& make = {});
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/path_problem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "planner/base/multiversion.hpp"
+#include "planner/horizon/path_lanes.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr double kLongestTail = 600.0;  // s, of straight flight after the horizon
+
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+const base::HorizonSettings& checked(const base::HorizonSettings& settings) {
+  if (settings.waypoints < 1) throw std::invalid_argument("horizon.waypoints: not at least 1");
+  if (!(settings.step > 0.0 && settings.time > 0.0)) throw std::invalid_argument("horizon.step and time: not above 0");
+  return settings;
+}
+
+base::Box ball(const Vec3& center, double radius) {
+  return {(center.array() - radius).matrix(), (center.array() + radius).matrix()};
+}
+
+}  // namespace
+
+PathProblem::PathProblem(const base::HorizonSettings& settings)
+    : settings_(checked(settings)), lower_(index(3 * settings.waypoints), -1.0), upper_(lower_.size(), 1.0) {
+  scene_.waypoints = settings.waypoints;
+  scene_.steps_per_leg = std::max(1, static_cast<int>(std::lround(settings.time / settings.waypoints / settings.step)));
+  scene_.steps = scene_.steps_per_leg * settings.waypoints;
+  if (scene_.steps > kMaxSteps)
+    throw std::invalid_argument("horizon: " + std::to_string(scene_.steps) + " steps of time / step; at most " +
+                                std::to_string(kMaxSteps));
+  scene_.step = settings.step;
+  scene_.deviation_weight = settings.deviation_weight;
+  scene_.reach.resize(index(settings.waypoints));
+  scene_.undisturbed.resize(index(scene_.steps + 1));
+  scene_.speed.resize(index(scene_.steps + 1));
+  undisturbed_.resize(index(scene_.steps + 1));
+  where_.resize(index(scene_.steps));
+}
+
+void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>& via) {
+  request_ = request;
+  const double acceleration = most_acceleration();
+  scene_.position = request.position;
+  scene_.velocity = request.velocity;
+  scene_.target = request.target;
+  scene_.via = via;
+  scene_.time_weight = (via ? kHurry : 1.0) * settings_.time_weight;
+  scene_.volume = request.volume;
+  scene_.frame = geometry::PathFrame(request.position, request.target);
+  scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,
+                     1.0 / (acceleration * settings_.step)};
+  scene_.inverse_braking = 1.0 / (2.0 * acceleration);
+  undisturbed_flight();
+  predict_obstacles();
+}
+
+// Along the straight line: up to cruise speed, and braking for the target.
+void PathProblem::undisturbed_flight() {
+  const base::VehicleLimits& vehicle = request_.vehicle;
+  const geometry::PathFrame& frame = scene_.frame;
+  const double climb_share = std::abs(frame.axis.z());
+  const double cruise =
+      climb_share > 0.0 ? std::min(vehicle.cruise_speed, vehicle.max_climb / climb_share) : vehicle.cruise_speed;
+  const double change = most_acceleration() * settings_.step;
+  double distance = 0.0;
+  double speed = std::clamp(request_.velocity.dot(frame.axis), 0.0, vehicle.max_speed);
+  double time = 0.0;
+  scene_.undisturbed[0] = frame.origin;
+  for (int step = 1; step <= scene_.steps; ++step) {
+    const double left = frame.length - distance;
+    const double wish = std::min({cruise, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
+    const double next = std::clamp(wish, speed - change, speed + change);
+    distance = std::min(frame.length, distance + 0.5 * (speed + next) * settings_.step);
+    speed = std::max(0.0, next);
+    if (frame.length - distance > kNear) time = step * settings_.step;
+    undisturbed_[index(step)] = distance;
+    scene_.undisturbed[index(step)] = frame.origin + distance * frame.axis;
+    scene_.speed[index(step)] = speed;
+  }
+  scene_.cruise = cruise;
+  scene_.undisturbed_time = time + (frame.length - distance) / cruise;
+  for (int k = 0; k < settings_.waypoints; ++k) {
+    const int step = (k + 1) * scene_.steps_per_leg;
+    const double t = step * settings_.step;
+    const double along = undisturbed_[index(step)];
+    scene_.reach[index(k)] = {std::max(kArrival, std::min(frame.length, vehicle.max_speed * t) - along),
+                              along + std::min(settings_.back_range, vehicle.max_speed * t),
+                              std::min(settings_.lateral_range, vehicle.max_speed * t)};
+  }
+}
+
+Clearance PathProblem::clearance() const {
+  return {request_.vehicle.radius + request_.margin, settings_.sigma_factor, request_.track_acceleration,
+          settings_.clearance_limit, request_.acceleration_trust};
+}
+
+// Where any motion can be. Each step moves the velocity along a straight line towards one that keeps the limits, by at
+// most the change that a step allows. So neither speed nor climb exceeds its limit or, where that is above, its value
+// at the start; and after time t the position is within acceleration · t² / 2 of straight flight from the start.
+void PathProblem::predict_obstacles() {
+  const base::VehicleLimits& vehicle = request_.vehicle;
+  const double speed = std::max(vehicle.max_speed, request_.velocity.norm());
+  const double climb = std::max(vehicle.max_climb, std::abs(request_.velocity.z()));
+  const double acceleration = most_acceleration();
+  base::Box before = ball(request_.position, 0.0);
+  for (int step = 0; step < scene_.steps; ++step) {
+    const double t = (step + 1) * settings_.step;
+    const base::Box fastest = ball(request_.position, speed * t);
+    const base::Box turning = ball(request_.position + t * request_.velocity, 0.5 * acceleration * t * t);
+    base::Box now{fastest.min.cwiseMax(turning.min), fastest.max.cwiseMin(turning.max)};
+    now.min.z() = std::max(now.min.z(), request_.position.z() - climb * t);
+    now.max.z() = std::min(now.max.z(), request_.position.z() + climb * t);
+    where_[index(step)] = {before.min.cwiseMin(now.min), before.max.cwiseMax(now.max)};
+    before = now;
+  }
+  obstacles_.build(request_.tracks, request_.paths, clearance(), settings_.step, where_);
+}
+
+// The lanes that are left over repeat the last solution.
+template <std::size_t kLanes>
+[[gnu::always_inline]] inline void PathProblem::evaluate_lanes(const double* x,
+                                                               std::span<optimizer::Cost> costs) const {
+  std::array<const double*, kLanes> variables;   // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+  std::array<optimizer::Cost*, kLanes> results;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const std::size_t solution = std::min(i, costs.size() - 1);
+    variables[i] = x + solution * lower_.size();
+    results[i] = i < costs.size() ? &costs[i] : nullptr;
+  }
+  FlightLanes<kLanes> flight(scene_, variables);
+  MeterLanes<kLanes> meter(scene_, obstacles_, flight.position);
+  int n = 0;
+  for (int leg = 0; leg < scene_.waypoints; ++leg) {
+    flight.begin_leg(leg);
+    for (int i = 0; i < scene_.steps_per_leg; ++i, ++n) {
+      flight.fly(n, i);
+      meter.add(n, flight.position);
+    }
+    meter.turn(flight.position);
+  }
+  meter.finish(results);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_twelve(const double* x, std::span<optimizer::Cost> costs) const {
+  evaluate_lanes<12>(x, costs);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_eight(const double* x, std::span<optimizer::Cost> costs) const {
+  evaluate_lanes<8>(x, costs);
+}
+
+JINK_MULTIVERSION void PathProblem::evaluate_four(const double* x, std::span<optimizer::Cost> costs) const {
+  evaluate_lanes<4>(x, costs);
+}
+
+// Three registers at a time keep the processor busy while each step waits for the one before.
+void PathProblem::evaluate(std::span<const double> x, std::span<optimizer::Cost> costs) const {
+  assert(x.size() == costs.size() * lower_.size());
+  constexpr std::size_t kMost = 12;
+  for (std::size_t i = 0; i < costs.size(); i += kMost) {
+    const std::span<optimizer::Cost> block = costs.subspan(i, std::min(kMost, costs.size() - i));
+    const double* first = x.data() + i * lower_.size();
+    if (block.size() > 8) {
+      evaluate_twelve(first, block);
+    } else if (block.size() > 4) {
+      evaluate_eight(first, block);
+    } else {
+      evaluate_four(first, block);
+    }
+  }
+}
+
+base::TimedPath PathProblem::motion(std::span<const double> x) const {
+  base::TimedPath path;
+  path.reserve(index(scene_.steps + 2));
+  path.push_back({0.0, request_.position, request_.velocity, Vec3::Zero()});
+  FlightLanes<1> flight(scene_, {x.data()});
+  int n = 0;
+  for (int leg = 0; leg < scene_.waypoints; ++leg) {
+    flight.begin_leg(leg);
+    for (int i = 0; i < scene_.steps_per_leg; ++i, ++n) {
+      flight.fly(n, i);
+      const Vec3 velocity = flight.velocity.lane(0);
+      path.back().acceleration = (velocity - path.back().velocity) / settings_.step;
+      path.push_back({(n + 1) * settings_.step, flight.position.lane(0), velocity, Vec3::Zero()});
+    }
+  }
+  fly_to_target(path, path.back());
+  return path;
+}
+
+// Straight on to the target and to rest there; a path that has settled at the target already ends where it arrived.
+void PathProblem::fly_to_target(base::TimedPath& path, base::TimedPoint flight) const {
+  const double stoppable = 1.0 / scene_.follower.inverse_change;  // speed that one step takes away
+  const auto arrived = [&](std::size_t i) {
+    return (path[i].position - request_.target).norm() <= kArrival && path[i - 1].velocity.norm() <= stoppable;
+  };
+  for (double tail = 0.0; !arrived(path.size() - 1) && tail < kLongestTail; tail += settings_.step) {
+    const Vec3 way = request_.target - flight.position;
+    const double distance = way.norm();
+    const double speed =
+        std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
+    const Vec3 wish = distance > 0.0 ? Vec3(way * (speed / distance)) : Vec3::Zero();
+    Vec3& p = flight.position;
+    Vec3& v = flight.velocity;
+    scene_.follower.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wish.x(), wish.y(), wish.z());
+    path.back().acceleration = (v - path.back().velocity) / settings_.step;
+    path.push_back({path.back().t + settings_.step, p, v, Vec3::Zero()});
+  }
+  if (!arrived(path.size() - 1)) return;
+  while (path.size() > 2 && arrived(path.size() - 2)) path.pop_back();
+  path[path.size() - 2].acceleration = -path[path.size() - 2].velocity / settings_.step;
+  path.back().position = request_.target;
+  path.back().velocity.setZero();
+  path.back().acceleration.setZero();
+}
+
+optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {
+  std::vector<Vec3> positions(index(scene_.steps + 1));
+  for (int n = 0; n <= scene_.steps; ++n) positions[index(n)] = base::sample(path, n * settings_.step).position;
+  std::vector<base::Box> where(index(scene_.steps));
+  for (std::size_t n = 0; n < where.size(); ++n) {
+    where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
+  }
+  MetObstacles obstacles;
+  obstacles.build(request_.tracks, request_.paths, clearance(), settings_.step, where);
+  PointLanes<1> position;
+  position.set(positions[0]);
+  MeterLanes<1> meter(scene_, obstacles, position);
+  for (int n = 0; n < scene_.steps; ++n) {
+    position.set(positions[index(n + 1)]);
+    meter.add(n, position);
+    if ((n + 1) % scene_.steps_per_leg == 0) meter.turn(position);
+  }
+  optimizer::Cost cost;
+  meter.finish({&cost});
+  return cost;
+}
+
+void PathProblem::imitate(const base::TimedPath& path, std::span<double> x) const {
+  for (int k = 0; k < settings_.waypoints; ++k) {
+    const std::size_t i = index(k);
+    const int step = (k + 1) * scene_.steps_per_leg;
+    const Vec3 q = scene_.frame.from_enu(base::sample(path, step * settings_.step).position);
+    const double along = q.x() - undisturbed_[index(step)];
+    x[3 * i] = std::clamp(along / (along > 0.0 ? scene_.reach[i].ahead : scene_.reach[i].behind), -1.0, 1.0);
+    x[3 * i + 1] = std::clamp(q.y() / scene_.reach[i].aside, -1.0, 1.0);
+    x[3 * i + 2] = std::clamp(q.z() / scene_.reach[i].aside, -1.0, 1.0);
+  }
+}
+
+}  // namespace jink::planner::horizon

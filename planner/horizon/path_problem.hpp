@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The remaining path at once: K waypoints, each a place and a time, and the motion that follows from them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "planner/base/settings.hpp"
+#include "planner/base/trajectory.hpp"
+#include "planner/base/types.hpp"
+#include "planner/geometry/known_path.hpp"
+#include "planner/horizon/nearby_obstacles.hpp"
+#include "planner/horizon/path_scene.hpp"
+#include "planner/optimizer/problem.hpp"
+
+namespace jink::planner::horizon {
+
+/// What a horizon plan starts from. Everything is valid at path time 0, tracks and the known paths' offsets too.
+struct PathRequest {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  base::Box volume;
+  base::VehicleLimits vehicle;
+  std::span<const base::Track> tracks;
+  std::span<const geometry::KnownPath> paths{};  ///< of vehicles that say where they will be
+  double margin = 0.0;                           ///< kept from every obstacle on top of the radii
+  double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
+  double acceleration_trust = base::kInfinity;   ///< as in predict_position
+  bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
+};
+
+/// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
+/// undisturbed flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's axis
+/// (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The vehicle
+/// follows with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every
+/// instant; with all of them 0 it is undisturbed flight.
+///
+/// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
+/// undisturbed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths the
+/// one at cruise speed wins. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and
+/// how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same for the hard
+/// margin, and for leaving the volume.
+class PathProblem final : public optimizer::Problem {
+ public:
+  /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.
+  explicit PathProblem(const base::HorizonSettings& settings);
+
+  /// Prepares a plan: the frame, undisturbed flight, and for every step of the horizon the obstacles that can be met in
+  /// it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
+  /// With `via` the way on from a horizon that ends short of that place, along the axis, leads over it, straight on
+  /// being closed, and lost time counts kHurry times: what is put off costs next to nothing otherwise. O(tracks + near
+  /// tracks · steps); no allocation once it has seen as many obstacles.
+  void prepare(const PathRequest& request, const std::optional<Vec3>& via = {});
+
+  [[nodiscard]] int dimension() const override { return 3 * settings_.waypoints; }
+  [[nodiscard]] int objectives() const override { return 3; }
+  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
+  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
+  /// Several solutions are evaluated in lockstep; each gets the same bits as alone.
+  void evaluate(std::span<const double> x, std::span<optimizer::Cost> costs) const override;
+
+  /// The motion of one solution, on to the target and at rest there: one point for each step. What evaluate() measures
+  /// is this motion's first part, to the bit.
+  [[nodiscard]] base::TimedPath motion(std::span<const double> x) const;
+  /// Objectives and violation of any path that starts at time 0, measured like those of a solution. It may be where no
+  /// solution can be. O(tracks + near tracks · steps), allocates.
+  [[nodiscard]] optimizer::Cost cost_of(const base::TimedPath& path) const;
+
+  /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
+  void imitate(const base::TimedPath& path, std::span<double> x) const;
+
+  [[nodiscard]] int steps() const { return scene_.steps; }
+  [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
+  /// How many obstacles can be met within the horizon.
+  [[nodiscard]] std::size_t obstacles() const { return obstacles_.obstacles(); }
+
+ private:
+  static constexpr int kMaxSteps = 256;
+  static constexpr double kHurry = 4.0;
+
+  [[nodiscard]] double most_acceleration() const {
+    return settings_.planned_acceleration(request_.vehicle.max_acceleration);
+  }
+  void undisturbed_flight();
+  void predict_obstacles();
+  [[nodiscard]] Clearance clearance() const;
+  void fly_to_target(base::TimedPath& path, base::TimedPoint flight) const;
+  template <std::size_t kLanes>
+  void evaluate_lanes(const double* x, std::span<optimizer::Cost> costs) const;
+  void evaluate_twelve(const double* x, std::span<optimizer::Cost> costs) const;
+  void evaluate_eight(const double* x, std::span<optimizer::Cost> costs) const;
+  void evaluate_four(const double* x, std::span<optimizer::Cost> costs) const;
+
+  base::HorizonSettings settings_;
+  PathRequest request_;
+  PathScene scene_;
+  MetObstacles obstacles_;
+  std::vector<double> lower_, upper_;
+  std::vector<double> undisturbed_;  // distance along the axis after each step
+  std::vector<base::Box> where_;     // the vehicle can be during each step
+};
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all solutions of one horizon plan share, laid out as flying and measuring them reads it.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "planner/base/types.hpp"
+#include "planner/geometry/geometry.hpp"
+#include "planner/horizon/nearby_obstacles.hpp"
+
+namespace jink::planner::horizon {
+
+inline constexpr double kCatchUp = 0.4;   ///< s, in which a distance from the wished position is made good
+inline constexpr double kArrival = 0.05;  ///< m, where a path is at the target
+inline constexpr double kNear = 0.3;      ///< m, where time stops counting
+inline constexpr double kShortLeg = 0.1;  ///< m, legs below have no direction
+
+/// How the vehicle follows a wished velocity: speed, climb and acceleration bounded, the acceleration constant in each
+/// step.
+struct Follower {
+  double step = 0.0;            ///< s
+  double inverse_speed = 0.0;   ///< 1 / largest speed
+  double inverse_climb = 0.0;   ///< 1 / largest vertical speed
+  double inverse_change = 0.0;  ///< 1 / largest change of velocity in a step
+
+  /// One step of one vehicle: position p, velocity v, wished velocity w. Without a branch, for loops over vehicles.
+  [[gnu::always_inline]] void advance(double& px, double& py, double& pz, double& vx, double& vy, double& vz, double wx,
+                                      double wy, double wz) const {
+    const double fast = std::sqrt(wx * wx + wy * wy + wz * wz) * inverse_speed;
+    const double steep = std::abs(wz) * inverse_climb;
+    const double more = steep > fast ? steep : fast;
+    const double share = 1.0 / (more > 1.0 ? more : 1.0);
+    const double dx = wx * share - vx;
+    const double dy = wy * share - vy;
+    const double dz = wz * share - vz;
+    const double hard = std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_change;
+    const double part = 1.0 / (hard > 1.0 ? hard : 1.0);
+    const double cx = part * dx;
+    const double cy = part * dy;
+    const double cz = part * dz;
+    px += (vx + 0.5 * cx) * step;
+    py += (vy + 0.5 * cy) * step;
+    pz += (vz + 0.5 * cz) * step;
+    vx += cx;
+    vy += cy;
+    vz += cz;
+  }
+};
+
+/// How far a variable of ±1 moves a waypoint, m.
+struct Reach {
+  double ahead = 0.0, behind = 0.0, aside = 0.0;
+};
+
+struct PathScene {
+  int waypoints = 0;
+  int steps_per_leg = 0;
+  int steps = 0;
+  double step = 0.0;  ///< s
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  std::optional<Vec3> via;  ///< over which the way on leads from where the horizon ends short of it
+  base::Box volume;
+  geometry::PathFrame frame;
+  Follower follower;
+  std::vector<Reach> reach;       ///< of each waypoint
+  std::vector<Vec3> undisturbed;  ///< position after each step, the start first
+  std::vector<double> speed;      ///< along the axis, likewise
+  double cruise = 0.0;            ///< along the axis, the climb limit considered
+  double undisturbed_time = 0.0;  ///< to the target
+  double inverse_braking = 0.0;   ///< 1 / (2 · planned acceleration): times speed² the way to a stop
+  double time_weight = 0.0;
+  double deviation_weight = 0.0;
+};
+
+}  // namespace jink::planner::horizon

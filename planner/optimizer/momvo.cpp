@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/optimizer/momvo.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace jink::planner::optimizer {
+namespace {
+
+constexpr double kNarrowVariables = 3.0;  // that a narrow move changes, on average
+constexpr std::size_t kFocused = 3;       // leaders that focus looks at: the best in the first objective
+
+}  // namespace
+
+Momvo::Momvo(std::size_t universes, int dimension, int objectives, const base::OptimizerSettings& settings)
+    : universes_(universes),
+      dimension_(dimension),
+      objectives_(objectives),
+      settings_(settings),
+      archive_(static_cast<std::size_t>(settings.archive), dimension, objectives),
+      ranking_(universes),
+      x_(universes * static_cast<std::size_t>(dimension)),
+      previous_(x_.size()),
+      costs_(universes),
+      kinds_(universes, Move::kWide) {
+  assert(universes > 0);
+}
+
+void Momvo::reset(const Problem& problem, base::RandomStream random) {
+  assert(problem.dimension() == dimension_ && problem.objectives() == objectives_);
+  problem_ = &problem;
+  random_ = random;
+  archive_.clear();
+  order_ = {};
+  moves_ = {};
+  std::fill(kinds_.begin(), kinds_.end(), Move::kWide);
+  lower_ = problem.lower();
+  upper_ = problem.upper();
+  for (std::size_t i = 0; i < universes_; ++i) {
+    const auto x = universe(i);
+    const bool opposite = settings_.opposition && i % 2 == 1;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      x[j] = opposite ? lower_[j] + upper_[j] - universe(i - 1)[j] : random_.uniform(lower_[j], upper_[j]);
+    }
+  }
+}
+
+void Momvo::place(std::size_t slot, std::span<const double> x) {
+  const auto to = universe(slot % universes_);
+  for (std::size_t j = 0; j < to.size(); ++j) to[j] = std::clamp(x[j], lower_[j], upper_[j]);
+}
+
+void Momvo::iterate(const Schedule& schedule) {
+  assert(problem_ != nullptr);
+  problem_->evaluate(x_, costs_);
+  for (std::size_t i = 0; i < universes_; ++i) {
+    make_rankable(costs_[i]);
+    const bool added = archive_.add(universe(i), costs_[i], random_);
+    moves_.judge(kinds_[i], added);
+  }
+  archive_.settle(random_);
+  order_ = ranking_.order(costs_, objectives_);
+  if (settings_.operators == base::Operators::kAdaptive) moves_.adapt();
+  move(schedule);
+}
+
+void Momvo::move(const Schedule& schedule) {
+  std::copy(x_.begin(), x_.end(), previous_.begin());
+  base::RandomStream random = random_;  // a local one stays in registers
+  for (std::size_t position = 0; position < universes_; ++position) {
+    const auto i = static_cast<std::size_t>(order_[position]);
+    kinds_[i] = settings_.operators == base::Operators::kAdaptive ? moves_.draw(random) : Move::kWide;
+    if (kinds_[i] == Move::kNarrow) {
+      move_narrowly(i, schedule.tdr, random);
+    } else {
+      // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
+      const double last = universes_ > 1 ? static_cast<double>(universes_ - 1) : 1.0;
+      move_widely(i, static_cast<double>(position) / last, schedule, random);
+    }
+  }
+  random_ = random;
+}
+
+// White holes and wormholes. Every draw is made, used or not, and the outcome selected: cheaper than branches that
+// nobody can predict.
+void Momvo::move_widely(std::size_t i, double inflation, const Schedule& schedule, base::RandomStream& random) {
+  const auto d = static_cast<std::size_t>(dimension_);
+  double* x = x_.data() + i * d;
+  const double* leader = archive_.x(archive_.draw(random)).data();
+  for (std::size_t j = 0; j < d; ++j) {
+    const auto giver = static_cast<std::size_t>(order_[white_hole(universes_, random)]);
+    const double through_wormhole =
+        wormhole(leader[j], schedule.tdr, lower_[j], upper_[j], settings_.operators, random);
+    const auto [inflate, worm] = random.uniform_pair();
+    const double kept = inflate < inflation ? previous_[giver * d + j] : x[j];
+    x[j] = std::clamp(worm < schedule.wep ? through_wormhole : kept, lower_[j], upper_[j]);
+  }
+}
+
+// A leader, moved in a few variables by steps that are mostly small.
+void Momvo::move_narrowly(std::size_t i, double tdr, base::RandomStream& random) {
+  const auto d = static_cast<std::size_t>(dimension_);
+  double* x = x_.data() + i * d;
+  const auto [focused, which] = random.uniform_pair();
+  const std::size_t first = std::min(archive_.size(), kFocused);
+  const std::size_t member =
+      focused < settings_.focus ? static_cast<std::size_t>(which * static_cast<double>(first)) : archive_.draw(random);
+  const double* leader = archive_.x(member).data();
+  const double share = kNarrowVariables / static_cast<double>(d);
+  for (std::size_t j = 0; j < d; ++j) {
+    const double moved = narrow_wormhole(leader[j], tdr, lower_[j], upper_[j], random);
+    x[j] = random.uniform() < share ? std::clamp(moved, lower_[j], upper_[j]) : leader[j];
+  }
+}
+
+std::span<const double> Momvo::representative() {
+  representative_ = archive_.draw(random_);
+  return archive_.x(representative_);
+}
+
+void Momvo::replace_worst(std::size_t rank, std::span<const double> x) {
+  assert(order_.size() == universes_);
+  const std::size_t position = universes_ - 1 - std::min(rank, universes_ - 1);
+  place(static_cast<std::size_t>(order_[position]), x);
+}
+
+}  // namespace jink::planner::optimizer

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/verify/verifier.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace jink::planner::verify {
+namespace {
+
+/// |p0 + p1 t + p2 t²|² on [0, duration]: the squared distance of two bodies in relative constant acceleration.
+struct RelativeMotion {
+  Vec3 p0, p1, p2;
+  double duration = 0.0;
+
+  [[nodiscard]] Vec3 at(double t) const { return p0 + t * (p1 + t * p2); }
+  [[nodiscard]] double squared_distance(double t) const { return at(t).squaredNorm(); }
+  [[nodiscard]] double slope(double t) const { return 2.0 * at(t).dot(p1 + 2.0 * t * p2); }
+  [[nodiscard]] double speed(double t) const { return (p1 + 2.0 * t * p2).norm(); }
+};
+
+/// Sorted instants of [0, duration] between which the squared distance is monotone: the ends and every stationary
+/// point. The slope is a cubic; the two zeros of its derivative split it in monotone pieces, each with at most one
+/// root.
+struct MonotonePieces {
+  std::array<double, 5> t{};
+  int count = 0;
+
+  explicit MonotonePieces(const RelativeMotion& m) {
+    std::array<double, 4> split{0.0, m.duration, m.duration, m.duration};
+    std::size_t splits = 1;
+    // slope(t)/2 = c0 + c1 t + c2 t² + c3 t³
+    const double c1 = m.p1.squaredNorm() + 2.0 * m.p0.dot(m.p2);
+    const double c2 = 3.0 * m.p1.dot(m.p2);
+    const double c3 = 2.0 * m.p2.squaredNorm();
+    const double discriminant = c2 * c2 - 3.0 * c3 * c1;
+    if (c3 > 0.0 && discriminant > 0.0) {
+      const double root = std::sqrt(discriminant);
+      for (const double s : {(-c2 - root) / (3.0 * c3), (-c2 + root) / (3.0 * c3)}) {
+        if (s > split[splits - 1] && s < m.duration) split[splits++] = s;
+      }
+    }
+    split[splits] = m.duration;
+    add(0.0);
+    for (std::size_t i = 0; i < splits; ++i) add_root(m, split[i], split[i + 1]);
+    add(m.duration);
+  }
+
+ private:
+  void add(double value) { t[static_cast<std::size_t>(count++)] = value; }
+
+  void add_root(const RelativeMotion& m, double low, double high) {
+    double at_low = m.slope(low);
+    const double at_high = m.slope(high);
+    if (!(at_low * at_high < 0.0)) return;
+    for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
+      const double middle = 0.5 * (low + high);
+      const double value = m.slope(middle);
+      if ((value < 0.0) == (at_low < 0.0)) {
+        low = middle;
+        at_low = value;
+      } else {
+        high = middle;
+      }
+    }
+    if (count < 4) add(0.5 * (low + high));
+  }
+};
+
+/// First instant of a monotonically falling piece at which the squared distance is below `limit`.
+double crossing(const RelativeMotion& m, double low, double high, double limit) {
+  for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
+    const double middle = 0.5 * (low + high);
+    (m.squared_distance(middle) < limit ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Folds one piece of relative motion, which starts at path time `t0`, into the result.
+void fold(const RelativeMotion& m, double t0, double radius, std::uint64_t id, Verification& result) {
+  const MonotonePieces pieces(m);
+  double previous = 0.0;
+  for (int i = 0; i < pieces.count; ++i) {
+    const double t = pieces.t[static_cast<std::size_t>(i)];
+    const double squared = m.squared_distance(t);
+    const double clearance = std::sqrt(squared) - radius;
+    if (clearance < result.min_clearance) {
+      result.min_clearance = clearance;
+      result.t_min_clearance = t0 + t;
+      result.nearest_id = id;
+    }
+    if (clearance < 0.0) {
+      const double contact = i == 0 ? 0.0 : crossing(m, previous, t, radius * radius);
+      if (!result.first_contact || t0 + contact < *result.first_contact) {
+        result.first_contact = t0 + contact;
+        result.contact_speed = m.speed(contact);
+      }
+    }
+    previous = t;
+  }
+}
+
+/// Obstacle position, velocity and acceleration `t` seconds after its track's instant.
+struct ObstacleAt {
+  Vec3 position, velocity, acceleration;
+
+  ObstacleAt(const base::Track& track, double t, double trust) {
+    const double s = t < trust ? t : trust;
+    velocity = track.velocity + s * track.acceleration;
+    position = track.position + s * (track.velocity + 0.5 * s * track.acceleration) + (t - s) * velocity;
+    acceleration = t < trust ? track.acceleration : Vec3::Zero();
+  }
+};
+
+/// How long after `tracks_time` the track's acceleration is believed.
+double believed(const base::Track& track, const VerifierInput& input) {
+  const double left = input.acceleration_trust - track.age;
+  return left > 0.0 ? left : 0.0;
+}
+
+bool well_formed(const VerifierInput& input) {
+  bool good = !input.path.empty() && std::isfinite(input.vehicle_radius);
+  double before = -base::kInfinity;
+  for (const base::TimedPoint& point : input.path) {
+    good = good && point.position.allFinite() && std::isfinite(point.t) && point.t > before;
+    before = point.t;
+  }
+  for (const base::Track& track : input.tracks) {
+    good = good && track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
+           std::isfinite(track.radius) && std::isfinite(track.age);
+  }
+  for (const geometry::KnownPath& known : input.known) good = good && known.well_formed();
+  return good;
+}
+
+/// A track as the check sees it. Times are the vehicle path's.
+class TrackMotion {
+ public:
+  TrackMotion(const base::Track& track, const VerifierInput& input)
+      : track_(track), tracks_time_(input.tracks_time), trust_(believed(track, input)) {}
+
+  [[nodiscard]] std::uint64_t id() const { return track_.id; }
+  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] double until() const { return base::kInfinity; }
+  [[nodiscard]] Vec3 position(double t) const { return ObstacleAt(track_, t - tracks_time_, trust_).position; }
+  /// The largest speed between two instants: the velocity changes along a straight line up to where the acceleration
+  /// ends, so that the speed is largest at one end.
+  [[nodiscard]] double fastest(double begin, double end) const {
+    const double first = ObstacleAt(track_, std::min(0.0, begin - tracks_time_), trust_).velocity.squaredNorm();
+    const double last = ObstacleAt(track_, end - tracks_time_, trust_).velocity.squaredNorm();
+    return std::sqrt(first > last ? first : last);
+  }
+
+  /// One vehicle segment, split where the prediction stops accelerating.
+  void check(const base::TimedPoint& a, const base::TimedPoint& b, const VerifierInput& input,
+             Verification& result) const {
+    const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
+    const double end = std::min(b.t, input.until);
+    const double change = tracks_time_ + trust_;
+    double t = a.t;
+    while (t < end) {
+      const double stop = (change > t && change < end) ? change : end;
+      // Rounding must not put the instant at which the acceleration ends before its end.
+      const double elapsed = t < change ? t - tracks_time_ : std::max(t - tracks_time_, trust_);
+      const ObstacleAt obstacle(track_, elapsed, trust_);
+      const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
+                             -0.5 * obstacle.acceleration, stop - t};
+      fold(m, t, input.vehicle_radius + track_.radius, track_.id, result);
+      t = stop;
+    }
+  }
+
+ private:
+  const base::Track& track_;
+  double tracks_time_, trust_;
+};
+
+/// A known path as the check sees it: pieces of constant velocity, the one before point k being piece k, with a stand
+/// before the first point and after the last.
+class KnownMotion {
+ public:
+  KnownMotion(const geometry::KnownPath& path, const VerifierInput& input)
+      : path_(path), tracks_time_(input.tracks_time) {}
+
+  [[nodiscard]] std::uint64_t id() const { return path_.id; }
+  [[nodiscard]] double radius() const { return path_.radius; }
+  [[nodiscard]] double until() const { return tracks_time_ + path_.until; }
+  [[nodiscard]] Vec3 position(double t) const { return on_piece(piece(t), t); }
+  [[nodiscard]] double fastest(double /*begin*/, double /*end*/) const { return path_.fastest(); }
+
+  /// One vehicle segment, split at the path's points.
+  void check(const base::TimedPoint& a, const base::TimedPoint& b, const VerifierInput& input,
+             Verification& result) const {
+    const Vec3 velocity = (b.position - a.position) / (b.t - a.t);
+    const double end = std::min({b.t, input.until, until()});
+    double t = a.t;
+    for (std::size_t k = piece(t); t < end; ++k) {
+      const double stop = k < path_.points.size() ? std::clamp(instant(k), t, end) : end;
+      if (stop > t) {
+        const RelativeMotion m{a.position + (t - a.t) * velocity - on_piece(k, t), velocity - velocity_on(k),
+                               Vec3::Zero(), stop - t};
+        fold(m, t, input.vehicle_radius + path_.radius, path_.id, result);
+      }
+      t = stop;
+    }
+  }
+
+ private:
+  [[nodiscard]] double instant(std::size_t k) const { return tracks_time_ + (path_.points[k].t - path_.offset); }
+  /// The piece that begins at t or holds it.
+  [[nodiscard]] std::size_t piece(double t) const {
+    std::size_t low = 0;
+    std::size_t high = path_.points.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      instant(middle) <= t ? low = middle + 1 : high = middle;
+    }
+    return low;
+  }
+  [[nodiscard]] Vec3 velocity_on(std::size_t k) const {
+    if (k == 0 || k == path_.points.size()) return Vec3::Zero();
+    const base::TimedPoint& from = path_.points[k - 1];
+    const base::TimedPoint& to = path_.points[k];
+    return (to.position - from.position) / (to.t - from.t);
+  }
+  [[nodiscard]] Vec3 on_piece(std::size_t k, double t) const {
+    if (k == 0) return path_.points.front().position;
+    if (k == path_.points.size()) return path_.points.back().position;
+    return path_.points[k - 1].position + (t - instant(k - 1)) * velocity_on(k);
+  }
+
+  const geometry::KnownPath& path_;
+  double tracks_time_;
+};
+
+/// Where the vehicle is during some segments: never farther than `radius` from `center`, where it is at time `t`, and
+/// that time never farther than `half` away.
+struct Stretch {
+  std::size_t first = 0, last = 0;  // segment i leads to point i
+  Vec3 center = Vec3::Zero();
+  double t = 0.0;
+  double radius = 0.0;
+  double half = 0.0;
+
+  Stretch() = default;
+  /// Segments first to last - 1, of which each begins before `until`.
+  Stretch(std::span<const base::TimedPoint> path, std::size_t first_, std::size_t last_) : first(first_), last(last_) {
+    const base::TimedPoint& middle = path[(first + last - 2) / 2];  // one that a segment begins with
+    center = middle.position;
+    t = middle.t;
+    double squared = 0.0;
+    for (std::size_t i = first - 1; i < last; ++i) {
+      squared = std::max(squared, (path[i].position - center).squaredNorm());
+    }
+    radius = std::sqrt(squared);
+    half = std::max(t - path[first - 1].t, path[last - 1].t - t);
+  }
+};
+
+/// Bounds of the clearance to one obstacle, to skip what can be neither the minimum nor a contact. They follow from its
+/// largest speed.
+template <typename Motion>
+class Bound {
+ public:
+  Bound(const Motion& motion, const VerifierInput& input, double begin, double end)
+      : motion_(motion), radius_(input.vehicle_radius + motion.radius()), speed_(motion.fastest(begin, end)) {}
+
+  /// Whether the clearance can fall below zero or below `ceiling` while the vehicle is within `radius` of `center` and
+  /// time within `half` of `t`. Lowers `ceiling` to the clearance at `center` and `t` where that counts.
+  [[nodiscard]] bool matters(const Vec3& center, double t, double radius, double half, double& ceiling) const {
+    const Vec3 obstacle = motion_.position(t);
+    const double distance = (center - obstacle).norm();
+    const double travel = speed_ * half;
+    const double scale = center.cwiseAbs().maxCoeff() + obstacle.cwiseAbs().maxCoeff() + radius + travel + 1.0;
+    const double limit = std::max(0.0, ceiling);
+    if (t < motion_.until()) ceiling = std::min(ceiling, distance - radius_);
+    // Not "less than": numbers so large that their sums overflow must be looked at.
+    return !(distance - radius - travel - radius_ - kRounding * scale > limit);
+  }
+
+ private:
+  // Of a sum of some ten numbers, relative to the largest: 64 times what they can amount to.
+  static constexpr double kRounding = 1e-13;
+  const Motion& motion_;
+  double radius_, speed_;
+};
+
+/// A path cut in stretches, for all obstacles.
+class PathCheck {
+ public:
+  explicit PathCheck(const VerifierInput& input) : input_(input) {
+    std::size_t end = 1;
+    while (end < input.path.size() && !(input.path[end - 1].t >= input.until)) ++end;
+    if (end == 1) return;
+    whole_ = Stretch(input.path, 1, end);
+    const std::size_t segments = (end - 1 + kStretches - 1) / kStretches;
+    for (std::size_t first = 1; first < end; first += segments) {
+      stretches_[count_++] = Stretch(input.path, first, std::min(first + segments, end));
+    }
+  }
+
+  template <typename Motion>
+  void add(const Motion& motion, Verification& result) {
+    if (input_.path.size() == 1) add_place(motion, input_.path[0], result);
+    if (count_ == 0) return;
+    const Bound bound(motion, input_, input_.path.front().t, input_.path.back().t);
+    if (!bound.matters(whole_.center, whole_.t, whole_.radius, whole_.half, ceiling_)) return;
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Stretch& s = stretches_[n];
+      if (!bound.matters(s.center, s.t, s.radius, s.half, ceiling_)) continue;
+      for (std::size_t i = s.first; i < s.last; ++i) {
+        const base::TimedPoint& a = input_.path[i - 1];
+        const base::TimedPoint& b = input_.path[i];
+        const double half = 0.5 * (std::min(b.t, input_.until) - a.t);
+        const Vec3 way = (half / (b.t - a.t)) * (b.position - a.position);
+        if (!bound.matters(a.position + way, a.t + half, way.norm(), half, ceiling_)) continue;
+        motion.check(a, b, input_, result);
+        ceiling_ = std::min(ceiling_, result.min_clearance);
+      }
+    }
+  }
+
+ private:
+  template <typename Motion>
+  void add_place(const Motion& motion, const base::TimedPoint& place, Verification& result) const {
+    if (place.t >= motion.until()) return;
+    fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t,
+         input_.vehicle_radius + motion.radius(), motion.id(), result);
+  }
+
+  static constexpr std::size_t kStretches = 12;
+  const VerifierInput& input_;
+  Stretch whole_;
+  std::array<Stretch, kStretches> stretches_;
+  std::size_t count_ = 0;
+  double ceiling_ = base::kInfinity;  // a clearance that is reached, to any track
+};
+
+}  // namespace
+
+Verification verify(const VerifierInput& input) {
+  Verification result;
+  result.valid = well_formed(input);
+  if (!result.valid) return result;
+  for (const base::TimedPoint& point : input.path) {
+    if (!input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
+  }
+  PathCheck check(input);
+  for (const base::Track& track : input.tracks) check.add(TrackMotion(track, input), result);
+  for (const geometry::KnownPath& known : input.known) check.add(KnownMotion(known, input), result);
+  return result;
+}
+
+}  // namespace jink::planner::verify

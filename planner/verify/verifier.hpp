@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The exact check of a finished path in continuous time. It shares no collision routine with the optimizer, so that a
+// mistake there cannot pass here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "planner/base/trajectory.hpp"
+#include "planner/base/types.hpp"
+#include "planner/geometry/known_path.hpp"
+
+namespace jink::planner::verify {
+
+/// What a path does among predicted obstacles. Times are the path's own.
+struct Verification {
+  double min_clearance = base::kInfinity;  ///< smallest distance from the vehicle's sphere to an obstacle's sphere
+  double t_min_clearance = 0.0;            ///< when
+  std::uint64_t nearest_id = 0;            ///< to which track or known path
+  std::optional<double> first_contact;     ///< first time at which a clearance falls below zero
+  double contact_speed = 0.0;              ///< relative speed at the first contact
+  bool inside_volume = true;               ///< the whole path lies in the volume
+  bool valid = true;  ///< the input could be judged: numbers finite, times increasing, a path there
+
+  /// What could not be judged is not free.
+  [[nodiscard]] bool free() const { return valid && !first_contact && inside_volume; }
+};
+
+struct VerifierInput {
+  std::span<const base::TimedPoint> path;  ///< vehicle; constant velocity between points
+  std::span<const base::Track> tracks;     ///< valid at the path time `tracks_time`
+  double tracks_time = 0.0;                ///< not after the path's first time
+  double vehicle_radius = 0.0;
+  base::Box volume;
+  double acceleration_trust = base::kInfinity;   ///< as in predict_position, from the measurement on
+  double until = base::kInfinity;                ///< path time up to which obstacles count
+  std::span<const geometry::KnownPath> known{};  ///< offsets and `until` count from `tracks_time`; margins do not count
+};
+
+/// Minimum over all instants, not samples: between two points and the instants at which a prediction changes or a known
+/// path turns, the squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9
+/// m. What is certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and
+/// points for each track that comes near; at worst O(points · tracks).
+Verification verify(const VerifierInput& input);
+
+}  // namespace jink::planner::verify

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/flight/virtual_transport.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "bridge/tracking/track_inbox.hpp"
+
+namespace jink::sim::flight {
+namespace {
+
+constexpr double kAnswerTimeout = 0.5;      // s, MAVSDK's, after which a command is sent again
+constexpr int kRetries = 3;                 // MAVSDK's
+constexpr double kLinkUp = 0.3;             // s after a boot, when the autopilot begins to listen
+constexpr double kFirstHeartbeat = 1.3;     // s after a boot
+constexpr std::uint8_t kStateCritical = 5;  // MAV_STATE
+
+bridge::vehicle::FlightMode bridge_mode(vehicle::FlightMode mode) {
+  switch (mode) {
+    case vehicle::FlightMode::kManual:
+    case vehicle::FlightMode::kAcro:
+    case vehicle::FlightMode::kStabilized:
+      return bridge::vehicle::FlightMode::kManual;
+    case vehicle::FlightMode::kAltitude:
+      return bridge::vehicle::FlightMode::kAltitude;
+    case vehicle::FlightMode::kPosition:
+      return bridge::vehicle::FlightMode::kPosition;
+    case vehicle::FlightMode::kTakeoff:
+      return bridge::vehicle::FlightMode::kTakeoff;
+    case vehicle::FlightMode::kHold:
+      return bridge::vehicle::FlightMode::kHold;
+    case vehicle::FlightMode::kReturn:
+      return bridge::vehicle::FlightMode::kReturn;
+    case vehicle::FlightMode::kLand:
+      return bridge::vehicle::FlightMode::kLand;
+    case vehicle::FlightMode::kOffboard:
+      return bridge::vehicle::FlightMode::kOffboard;
+  }
+  return bridge::vehicle::FlightMode::kOther;
+}
+
+bridge::vehicle::BatteryState bridge_battery(vehicle::BatteryLevel level) {
+  switch (level) {
+    case vehicle::BatteryLevel::kUnknown:
+      return bridge::vehicle::BatteryState::kUnknown;
+    case vehicle::BatteryLevel::kOk:
+      return bridge::vehicle::BatteryState::kOk;
+    case vehicle::BatteryLevel::kLow:
+      return bridge::vehicle::BatteryState::kLow;
+    case vehicle::BatteryLevel::kCritical:
+    case vehicle::BatteryLevel::kEmergency:
+      return bridge::vehicle::BatteryState::kCritical;
+  }
+  return bridge::vehicle::BatteryState::kUnknown;
+}
+
+}  // namespace
+
+VirtualLink::VirtualLink(vehicle::Autopilot& autopilot, std::uint64_t seed)
+    : autopilot_(autopilot),
+      frame_(vehicle::kSitlOrigin),
+      up_(seed, faults::link_stream(autopilot.options().system_id, 0)),
+      down_(seed, faults::link_stream(autopilot.options().system_id, 1)) {}
+
+void VirtualLink::impair(const faults::LinkImpairment& impairment) {
+  up_.set(impairment.up);
+  down_.set(impairment.down);
+}
+
+void VirtualLink::note_reset(const Vec3& by) {
+  ++resets_;
+  shift_ += by;
+}
+
+void VirtualLink::advance(double now) {
+  now_ = now;
+  send_again();
+  exchange();
+}
+
+void VirtualLink::send_telemetry() {
+  if (autopilot_.reboots() > 0 && autopilot_.boot_time() < kFirstHeartbeat) return;
+  down_.push(now_, snapshot());
+  exchange();
+}
+
+bool VirtualLink::send(const bridge::vehicle::Setpoint& setpoint) {
+  up_.push(now_, setpoint);
+  exchange();
+  return true;
+}
+
+void VirtualLink::request(bridge::vehicle::Command command) {
+  const CommandPacket packet{command, commands_++};
+  unanswered_.push_back({packet, now_, 0});
+  up_.push(now_, packet);
+  exchange();
+}
+
+std::optional<bridge::vehicle::CommandReport> VirtualLink::next_report() {
+  if (reports_.empty()) return std::nullopt;
+  bridge::vehicle::CommandReport report = std::move(reports_.front());
+  reports_.pop_front();
+  return report;
+}
+
+void VirtualLink::exchange() {
+  const auto take = [this](const auto& packet) { deliver(packet); };
+  UpPacket up;
+  while (up_.pop(now_, up)) std::visit(take, up);
+  DownPacket down;
+  while (down_.pop(now_, down)) std::visit(take, down);
+}
+
+void VirtualLink::deliver(const bridge::vehicle::Setpoint& setpoint) {
+  if (autopilot_.reboots() > 0 && autopilot_.boot_time() < kLinkUp) return;
+  vehicle::Setpoint out;
+  out.position = setpoint.position;
+  out.velocity = setpoint.velocity;
+  out.acceleration = setpoint.acceleration;
+  out.yaw = setpoint.yaw;
+  autopilot_.offboard_setpoint(out);
+}
+
+void VirtualLink::deliver(const CommandPacket& packet) {
+  if (autopilot_.reboots() > 0 && autopilot_.boot_time() < kLinkUp) return;
+  const vehicle::Result result = act(packet.command);
+  const bool accepted = result == vehicle::Result::kAccepted;
+  const std::string detail = accepted ? "" : "result " + std::to_string(static_cast<int>(result));
+  down_.push(now_, AnswerPacket{{packet.command, accepted, detail}, packet.number});
+}
+
+vehicle::Result VirtualLink::act(bridge::vehicle::Command command) {
+  switch (command) {
+    case bridge::vehicle::Command::kArm:
+      return autopilot_.arm();
+    case bridge::vehicle::Command::kDisarm:
+      return autopilot_.disarm();
+    case bridge::vehicle::Command::kOffboard:
+      return autopilot_.set_mode(6);
+    case bridge::vehicle::Command::kHold:
+      return autopilot_.hold();
+    case bridge::vehicle::Command::kLand:
+      return autopilot_.land();
+  }
+  return vehicle::Result::kUnsupported;
+}
+
+/// Stamps are those of its arrival, as a receiver has no others.
+void VirtualLink::deliver(const bridge::vehicle::VehicleState& state) {
+  state_ = state;
+  state_.heartbeat_stamp = state_.position_stamp = now_;
+}
+
+void VirtualLink::deliver(const AnswerPacket& answer) {
+  const auto asked = std::find_if(unanswered_.begin(), unanswered_.end(),
+                                  [&](const Unanswered& u) { return u.packet.number == answer.number; });
+  if (asked == unanswered_.end()) return;  // answered before, or given up
+  unanswered_.erase(asked);
+  reports_.push_back(answer.report);
+}
+
+void VirtualLink::send_again() {
+  for (Unanswered& waiting : unanswered_) {
+    if (now_ - waiting.sent < kAnswerTimeout) continue;
+    waiting.sent = now_;
+    if (++waiting.retries <= kRetries) up_.push(now_, waiting.packet);
+  }
+  std::erase_if(unanswered_, [&](const Unanswered& waiting) {
+    if (waiting.retries <= kRetries) return false;
+    reports_.push_back({waiting.packet.command, false, "no answer"});
+    return true;
+  });
+}
+
+bridge::vehicle::VehicleState VirtualLink::snapshot() const {
+  const vehicle::Motion& motion = autopilot_.estimated_motion();
+  bridge::vehicle::VehicleState state;
+  state.armed = autopilot_.armed();
+  state.mode = bridge_mode(autopilot_.mode());
+  state.position = motion.position;
+  state.velocity = motion.velocity;
+  state.yaw = motion.yaw;
+  state.armable = autopilot_.prearm_ok();
+  state.local_position_ok = autopilot_.position_valid();
+  state.gps_lost = !autopilot_.estimator().gps();
+  state.in_air = autopilot_.landed_state() != vehicle::LandedState::kOnGround;
+  state.health = state.local_position_ok ? "" : "local position";
+  state.failsafe = autopilot_.heartbeat().system_status >= kStateCritical;
+  state.estimate_resets = resets_;
+  state.estimate_shift = shift_;
+  state.battery = bridge_battery(autopilot_.battery_level());
+  state.origin = frame_.to_geodetic(autopilot_.estimator().origin());
+  state.system_id = static_cast<std::uint32_t>(autopilot_.options().system_id);
+  return state;
+}
+
+VirtualTracks::VirtualTracks(const world::World& world, const faults::FaultTimeline& timeline, std::uint64_t seed)
+    : world_(world), timeline_(timeline), pipeline_(world.scenario().sensing, seed), faults_(seed) {}
+
+void VirtualTracks::advance(double now, std::span<const world::VehicleTruth> vehicles) {
+  now_ = now;
+  vehicles_.assign(vehicles.begin(), vehicles.end());
+  std::vector<Vec3> positions;
+  for (const world::VehicleTruth& vehicle : vehicles) positions.push_back(vehicle.position);
+  pipeline_.step(now, world_, positions);
+}
+
+bool VirtualTracks::poll(bridge::tracking::TrackMessage& message) {
+  world::TrackMessage measured;
+  do {
+    if (!pipeline_.poll(now_, measured)) return false;
+  } while (!faults_.apply(timeline_, world_, vehicles_, measured));
+  accept(measured, message);
+  return true;
+}
+
+// As a reader behind a real transport does it.
+void VirtualTracks::accept(const world::TrackMessage& measured, bridge::tracking::TrackMessage& message) {
+  message = {1, now_, now_ - measured.stamp - measured.clock_offset, {}, 0};
+  bridge::tracking::TrackSieve sieve(message, measured.tracks.size());
+  for (const planner::base::Track& track : measured.tracks) sieve.add(track);
+  ++status_.messages;
+  status_.dropped_tracks += message.dropped;
+  if (const std::string why = sieve.why(); !why.empty()) status_.last_refusal = why;
+}
+
+}  // namespace jink::sim::flight

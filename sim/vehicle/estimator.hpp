@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the autopilot believes of its motion: the truth with the errors of a satellite-aided estimate. No filter is
+// modelled, only what one gets wrong. Attitude and rates are taken as known.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/vehicle/gauss_markov.hpp"
+#include "sim/vehicle/vehicle_model.hpp"
+
+namespace jink::sim::vehicle {
+
+/// Standard deviations per axis. The noises are not white, as a filter's output is not: they die down within 1.5 s.
+struct EstimateErrors {
+  double position_noise = 0.0;  ///< m
+  double velocity_noise = 0.0;  ///< m/s
+  double drift = 0.0;           ///< m, of the slow wander of the position
+  double drift_time = 20.0;     ///< s, over which it dies down to 1/e
+};
+
+/// As PX4's SITL: in hover a standard deviation of 0.05 to 0.17 m, a slow wander of up to 0.4 m; standing on the ground
+/// 0.05 m/s of velocity. Fitted to recordings of it.
+[[nodiscard]] constexpr EstimateErrors measured_estimate_errors() {
+  return {.position_noise = 0.07, .velocity_noise = 0.05, .drift = 0.2, .drift_time = 20.0};
+}
+
+/// Not thread-safe. The same seed gives the same errors.
+class Estimator {
+ public:
+  /// Throws std::invalid_argument for errors that are negative or not finite.
+  Estimator(const EstimateErrors& errors, std::uint64_t seed, const Motion& truth);
+
+  /// Advances by VehicleModel::kStep to the motion `truth`. Without GPS for longer than `timeout` (s) the horizontal
+  /// position is no longer valid.
+  void step(const Motion& truth, double timeout);
+  /// Cuts and restores satellite navigation. Away, the horizontal velocity is dead reckoning and its error walks; back
+  /// within the time-out the error dies down, later the position is reset.
+  void set_gps(bool available);
+  /// Moves the estimate at once, for good; counts as a reset. `by` is finite.
+  void jump(const Vec3& by);
+  /// A restart: the local frame begins at `origin` (in the simulation's), and the errors so far are forgotten.
+  void restart(const Vec3& origin, const Motion& truth);
+
+  /// In the autopilot's local frame.
+  [[nodiscard]] const Motion& motion() const { return motion_; }
+  /// The local frame's origin in the simulation's frame: zero until a restart.
+  [[nodiscard]] const Vec3& origin() const { return origin_; }
+  /// The motion is the truth, bit by bit.
+  [[nodiscard]] bool exact() const { return exact_; }
+  [[nodiscard]] bool gps() const { return gps_; }
+  [[nodiscard]] bool position_valid() const { return valid_; }
+  /// Goes up by one, and around, whenever the estimate jumps.
+  [[nodiscard]] std::uint8_t reset_counter() const { return resets_; }
+  /// m, what the filter reckons its horizontal error to be.
+  [[nodiscard]] double horizontal_accuracy() const;
+
+ private:
+  void reckon();
+  void update(const Motion& truth);
+
+  GaussMarkov position_noise_;
+  GaussMarkov velocity_noise_;
+  GaussMarkov drift_;
+  planner::base::RandomStream walk_;
+  Motion motion_;
+  Vec3 origin_ = Vec3::Zero();
+  Vec3 jumped_ = Vec3::Zero();
+  Vec3 reckoned_position_ = Vec3::Zero();  ///< errors of dead reckoning
+  Vec3 reckoned_velocity_ = Vec3::Zero();
+  double away_ = 0.0;  ///< s without GPS
+  std::uint8_t resets_ = 0;
+  bool exact_;
+  bool gps_ = true;
+  bool valid_ = true;
+};
+
+}  // namespace jink::sim::vehicle

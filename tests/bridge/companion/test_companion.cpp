@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The loop when all goes well: what is planned, what goes on the wire.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/bridge/companion/companion_loop.hpp"
+
+namespace jink::bridge::companion {
+namespace {
+
+using testing::Loop;
+
+TEST(Companion, FliesAMissionFromTheGroundToHold) {
+  Loop loop;
+  loop.run(40.0);
+  const FlightSummary summary = loop.companion.summary();
+  EXPECT_EQ(summary.outcome, supervisor::Outcome::kReached) << summary.reason;
+  EXPECT_EQ(loop.link.requests,
+            (std::vector{vehicle::Command::kOffboard, vehicle::Command::kArm, vehicle::Command::kHold}));
+  EXPECT_NEAR(summary.straight_length, 20.0, 0.5);
+  EXPECT_NEAR(summary.path_length, 20.0, 0.6);
+  EXPECT_NEAR(summary.flight_time, 10.0, 1.0);
+  EXPECT_NEAR(summary.max_speed, 2.0, 0.1);
+  EXPECT_GT(summary.plans, 80U);
+  EXPECT_EQ(summary.plan_ms.size(), summary.plans);
+  EXPECT_EQ(summary.deadline_misses, 0U);
+  EXPECT_FALSE(summary.track_to_setpoint_ms.empty());
+}
+
+TEST(Companion, TakesOffAboveWhereItStands) {
+  Loop loop;
+  loop.follows = false;
+  loop.link.telemetry.position = {3, 4, 0.5};
+  loop.run(1.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
+  EXPECT_EQ(loop.last().position, Vec3(3, 4, 2.5));
+  EXPECT_EQ(loop.last().velocity, Vec3::Zero());
+}
+
+TEST(Companion, StreamsNothingWhileItWaits) {
+  Loop loop;
+  loop.tracks = false;
+  loop.run(5.0);
+  EXPECT_TRUE(loop.link.sent.empty());
+  EXPECT_TRUE(loop.link.requests.empty());
+  EXPECT_EQ(loop.recorder.count("waiting"), 1);
+}
+
+TEST(Companion, RaisesWaypointsToMinHeightAndSaysSo) {
+  config::Mission m = Loop::mission();
+  m.waypoints = {{5, 0, 0.2}, {20, 0, 3}};
+  Loop loop(m);
+  loop.airborne().fly();
+  EXPECT_EQ(loop.recorder.count("raised"), 1);
+  EXPECT_NE(loop.recorder.last("raised").find("0.2"), std::string::npos);
+  EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(5, 0, 1));
+}
+
+TEST(Companion, RaisesALowStartToMinHeightAndSaysSo) {
+  Loop usual;
+  usual.fly();
+  EXPECT_EQ(usual.recorder.count("raised"), 0);
+
+  config::Mission m = Loop::mission();
+  m.takeoff_height = 0.4;
+  Loop climbs(m);
+  climbs.fly();
+  EXPECT_EQ(climbs.recorder.count("raised"), 1);
+  EXPECT_NE(climbs.recorder.last("raised").find("0.4"), std::string::npos) << climbs.recorder.last("raised");
+  EXPECT_GE(climbs.last().position.z(), 1.0);
+
+  Loop flies(m);  // whose take-off height does not matter
+  flies.airborne({0, 0, 0.5}).fly();
+  EXPECT_EQ(flies.recorder.count("raised"), 1);
+  EXPECT_NE(flies.recorder.last("raised").find("0.5"), std::string::npos) << flies.recorder.last("raised");
+}
+
+TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
+  Loop loop;
+  loop.airborne().fly();
+  const planner::horizon::PathRequest& request = loop.planner.jobs.back().request;
+  // Tracking errors must not lead out of it: paths keep some of the margin.
+  const double inset = 0.3 * planner::base::HorizonSettings{}.margin;
+  EXPECT_TRUE(request.volume.min.isApprox(Vec3(-5, -10, 1) + Vec3::Constant(inset)));
+  EXPECT_TRUE(request.volume.max.isApprox(Vec3(30, 10, 12) - Vec3::Constant(inset)));
+  EXPECT_EQ(request.margin, planner::base::HorizonSettings{}.margin);
+  EXPECT_EQ(request.track_acceleration, planner::base::HorizonSettings{}.track_acceleration);
+}
+
+TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
+  Loop loop;
+  loop.airborne({0, 11, 0.6}).fly();
+  EXPECT_EQ(loop.planner.jobs.front().request.volume.max.y(), 11.0);
+  EXPECT_EQ(loop.planner.jobs.front().request.volume.min.z(), 0.6);
+  loop.run(5.0);
+  EXPECT_EQ(loop.planner.jobs.back().request.volume.max.y(), 10.0 - 0.3 * planner::base::HorizonSettings{}.margin);
+  EXPECT_GT(loop.planner.jobs.back().request.volume.min.z(), 0.9);
+}
+
+TEST(Companion, FliesByTheWaypointsOnTheWay) {
+  config::Mission m = Loop::mission();
+  m.waypoints = {{4, 0, 2}, {4, 4, 2}};
+  Loop loop(m);
+  loop.airborne().fly();
+  EXPECT_EQ(loop.planner.jobs.front().request.target, Vec3(4, 0, 2));
+  loop.run(20.0);
+  EXPECT_EQ(loop.recorder.count("waypoint"), 1);
+  EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(4, 4, 2));
+  EXPECT_EQ(loop.companion.supervisor().outcome(), supervisor::Outcome::kReached);
+  // The plan to the waypoint before seeds none to the next.
+  for (std::size_t i = 1; i < loop.planner.jobs.size(); ++i) {
+    const bool changed = loop.planner.jobs[i].request.target != loop.planner.jobs[i - 1].request.target;
+    EXPECT_EQ(loop.planner.jobs[i].previous.empty(), changed) << i;
+  }
+}
+
+TEST(Companion, AppliesAPlanFromItsStart) {
+  config::Settings settings;
+  settings.companion.setpoint_lead = 0.0;
+  Loop loop(Loop::mission(), settings);
+  loop.planner.promised = 0.3;
+  loop.planner.takes = 0.1;
+  loop.airborne();
+  while (loop.recorder.plans == 0) loop.turn();
+  const double start = loop.planner.jobs.front().start;
+  EXPECT_NEAR(start - loop.planner.jobs.front().begun, 0.3, 1e-9);
+  while (loop.now < start) {
+    loop.turn();
+    EXPECT_EQ(loop.last().velocity, Vec3::Zero());
+  }
+  while (loop.last().velocity.x() == 0.0) loop.turn();
+  EXPECT_NEAR(loop.last().velocity.x(), 2.0, 1e-9);
+  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - Loop::kTurn - start), 1e-6);
+  EXPECT_EQ(loop.companion.summary().deadline_misses, 0U);
+}
+
+TEST(Companion, LooksForAWayRoundWhereItComesNoNearer) {
+  Loop loop;
+  loop.airborne();
+  loop.follows = false;
+  while (loop.planner.jobs.empty()) loop.turn();
+  const double begun = loop.planner.jobs.front().begun;
+  loop.run(6.0);
+  const double moved = loop.now;
+  loop.link.telemetry.position.x() += 1.0;
+  loop.run(1.0);
+  for (const PlanJob& job : loop.planner.jobs) {
+    EXPECT_EQ(job.request.stuck, job.begun > begun + 3.99 && job.begun < moved) << job.begun - begun;
+  }
+  EXPECT_EQ(loop.recorder.count("stuck"), 2);
+}
+
+// Until it is known how it moves, or for as long as is worth waiting.
+TEST(Companion, CruisesSlowlyPastWhatItDoesNotUnderstand) {
+  const double cruise = Loop::mission().vehicle.cruise_speed;
+  for (const double distance : {6.0, 35.0}) {
+    Loop loop;
+    loop.airborne();
+    for (double t = 0.0; t < 6.0; t += Loop::kTurn) {
+      // A circle of 1 m once in 3 s about a place ahead.
+      const double phase = 2.1 * loop.now;
+      const Vec3 out(std::cos(phase), std::sin(phase), 0.0);
+      const Vec3 along(-out.y(), out.x(), 0.0);
+      loop.seen = {{.id = 3,
+                    .position = Vec3(distance, 3, 2) + out,
+                    .velocity = 2.1 * along,
+                    .acceleration = -2.1 * 2.1 * out,
+                    .radius = 0.4}};
+      loop.turn();
+    }
+    std::vector<double> speeds;
+    for (const PlanJob& job : loop.planner.jobs) speeds.push_back(job.request.vehicle.cruise_speed);
+    ASSERT_GT(speeds.size(), 20U);
+    EXPECT_EQ(speeds.front(), distance < 10.0 ? 0.3 * cruise : cruise) << distance;
+    EXPECT_EQ(speeds.back(), cruise) << distance;
+    EXPECT_EQ(loop.recorder.count("caution"), distance < 10.0 ? 2 : 0) << distance;
+  }
+}
+
+TEST(Companion, PlansFromWhereTheReferenceWillBe) {
+  Loop loop;
+  loop.seen = {{.id = 3, .position = {5, 5, 2}, .velocity = {0, -1, 0}, .radius = 0.4}};
+  loop.airborne().fly();
+  const PlanJob& job = loop.planner.jobs.back();
+  const PlanJob& before = loop.planner.jobs[loop.planner.jobs.size() - 2];
+  EXPECT_NEAR((job.request.position - before.request.position).x(), 2.0 * (job.start - before.start), 1e-6);
+  EXPECT_NEAR(job.request.velocity.x(), 2.0, 1e-9);
+  ASSERT_FALSE(job.previous.empty());
+  EXPECT_NEAR(job.previous.front().t, 0.0, 1e-9);
+  ASSERT_EQ(job.tracks.size(), 1U);
+  EXPECT_NEAR(job.tracks[0].position.y(), 5.0 - (job.start - job.newest_track), 1e-9);
+}
+
+TEST(Companion, CountsALatePlanAsAMiss) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.planner.takes = 0.3;  // the present plan's commitment ends after 0.2 s
+  const auto before = loop.companion.summary();
+  loop.run(1.0);
+  const auto after = loop.companion.summary();
+  EXPECT_GT(after.deadline_misses, before.deadline_misses);
+  EXPECT_LE(after.deadline_misses, after.plans - before.plans);
+}
+
+TEST(Companion, PlansAtTheStatedRateAndOneAtATime) {
+  config::Settings settings;
+  settings.companion.replan_rate_hz = 10.0;
+  settings.companion.largest_replan_rate_hz = 20.0;
+  config::Mission m = Loop::mission();
+  m.tracks.required = false;
+  Loop loop(m, settings);
+  loop.airborne().fly();
+  loop.tracks = false;
+  loop.turn();
+  const std::size_t before = loop.planner.jobs.size();
+  loop.run(2.0);
+  EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - before), 20.0, 1.0);
+  loop.tracks = true;  // in every turn: plans at the largest rate, to within a turn
+  const std::size_t sooner = loop.planner.jobs.size();
+  loop.run(2.0);
+  EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - sooner), 2.0 / 0.06, 2.0);
+  loop.planner.takes = 0.3;
+  const std::size_t slow = loop.planner.jobs.size();
+  loop.run(3.0);
+  EXPECT_LE(loop.planner.jobs.size() - slow, 11U);
+}
+
+TEST(Companion, EngagingInTheAirDoesNotCallTheVehicleBack) {
+  Loop loop;
+  loop.airborne();
+  loop.obeys = false;
+  for (int i = 0; i < 50; ++i) {
+    loop.link.telemetry.position.x() = 4.0 * loop.now;  // a pilot flies it
+    loop.turn();
+  }
+  EXPECT_NEAR(loop.last().position.x(), 4.0 * (loop.now - Loop::kTurn), 1e-9);
+}
+
+TEST(Companion, TurnsTheHeadingToTheWaypointAtABoundedRate) {
+  config::Mission m = Loop::mission();
+  m.waypoints = {{0, 8, 2}};
+  Loop loop(m);
+  loop.link.telemetry.yaw = -2.5;
+  loop.airborne().fly();
+  loop.run(4.0);
+  double fastest = 0.0;
+  for (std::size_t i = 1; i < loop.link.sent.size(); ++i) {
+    const double change = std::remainder(loop.link.sent[i].yaw - loop.link.sent[i - 1].yaw, 2.0 * std::numbers::pi);
+    fastest = std::max(fastest, std::abs(change));
+  }
+  EXPECT_EQ(loop.link.sent.front().yaw, -2.5);
+  EXPECT_NEAR(fastest, 1.5 * Loop::kTurn, 1e-9);
+  EXPECT_NEAR(loop.last().yaw, std::numbers::pi / 2.0, 1e-6);
+}
+
+TEST(Companion, PlansFromTheVehicleWhereTrackingIsLostAndSaysItOnce) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.follows = false;
+  loop.link.telemetry.position += Vec3(0, 2.5, 0);
+  loop.link.telemetry.velocity = {0.5, 0.5, 0};
+  const std::size_t jobs = loop.planner.jobs.size();
+  while (loop.planner.jobs.size() == jobs) loop.turn();
+  const PlanJob& job = loop.planner.jobs.back();
+  const Vec3 then = loop.link.telemetry.position + (job.start - job.begun) * loop.link.telemetry.velocity;
+  EXPECT_LT((job.request.position - then).norm(), 0.05);  // where it will be when the plan starts
+  EXPECT_EQ(job.request.velocity, Vec3(0.5, 0.5, 0));
+  EXPECT_TRUE(job.previous.empty());
+  EXPECT_EQ(loop.recorder.count("reference_lost"), 1);
+  for (int i = 0; i < 25; ++i) {  // it drifts off ahead of every plan
+    loop.link.telemetry.position += Vec3(0, 0.3, 0);
+    loop.turn();
+  }
+  EXPECT_GT(loop.planner.jobs.size(), jobs + 3);
+  EXPECT_EQ(loop.recorder.count("reference_lost"), 1);
+}
+
+// The loop is woken by a track and by the plan that it leads to, between two turns.
+TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.tracks = false;
+  loop.planner.takes = 0.005;
+  loop.run(0.04);
+  const std::size_t jobs = loop.planner.jobs.size();
+  const std::size_t sent = loop.link.sent.size();
+  const double woken = loop.now - Loop::kTurn + 0.006;
+  loop.source.messages.push_back({1, woken, 0.0, {}, 0});
+  loop.companion.step(woken);
+  ASSERT_EQ(loop.planner.jobs.size(), jobs + 1);
+  EXPECT_EQ(loop.link.sent.size(), sent);  // no setpoint out of turn without a reason
+  loop.companion.step(woken + 0.005);
+  EXPECT_EQ(loop.link.sent.size(), sent + 1);
+  EXPECT_NEAR(loop.companion.summary().track_to_setpoint_ms.back(), 5.0, 1e-6);
+}
+
+TEST(Companion, DoesNotFleeFromItsOwnTrack) {
+  Loop loop;
+  loop.airborne().fly();
+  for (int i = 0; i < 100; ++i) {
+    planner::base::Track own;
+    own.id = 9;
+    own.radius = 0.3;
+    own.position = loop.link.telemetry.position + Vec3(0.05, 0, 0);
+    own.velocity = loop.link.telemetry.velocity;
+    loop.seen = {own};
+    loop.turn();
+  }
+  EXPECT_TRUE(loop.planner.jobs.back().tracks.empty());
+  EXPECT_EQ(loop.recorder.last("tracks_self"), "1 tracks are taken for this vehicle itself");
+}
+
+TEST(Companion, LandsWhereTheMissionSaysSo) {
+  config::Mission m = Loop::mission();
+  m.arrival = config::Arrival::kLand;
+  m.waypoints = {{3, 0, 2}};
+  Loop loop(m);
+  loop.airborne().fly();
+  loop.run(3.0);
+  EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
+  const std::size_t sent = loop.link.sent.size();
+  loop.run(2.0);
+  EXPECT_EQ(loop.link.sent.size(), sent);
+  loop.link.telemetry.armed = loop.link.telemetry.in_air = false;
+  loop.turn();
+  EXPECT_EQ(loop.companion.summary().outcome, supervisor::Outcome::kReached);
+}
+
+}  // namespace
+}  // namespace jink::bridge::companion

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/prediction/forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bridge/prediction/harmonic_fit.hpp"
+#include "bridge/prediction/imm_filter.hpp"
+#include "bridge/prediction/motion_learner.hpp"
+#include "planner/base/random.hpp"
+
+namespace jink::bridge::prediction {
+namespace {
+
+using planner::base::RandomStream;
+using planner::base::Track;
+
+constexpr double kStep = 0.05;  // s
+
+// [Contracts] trefoil of scale 1 about (10, 0, 1), slower 1.1.
+Vec3 trefoil(double t) {
+  const double s = t / 1.1;
+  return {10.0 + std::sin(s) + 2.0 * std::sin(2.0 * s), std::cos(s) - 2.0 * std::cos(2.0 * s), 1.0 - std::sin(3.0 * s)};
+}
+
+Vec3 swing(double t) {
+  return {2.0 + 1.5 * std::sin(1.7 * t), 0.5, 3.0};
+}
+
+template <typename Motion>
+Track exact(Motion motion, double t) {
+  constexpr double kDifference = 1e-4;
+  Track track;
+  track.radius = 0.4;
+  track.position = motion(t);
+  track.velocity = (motion(t + kDifference) - motion(t - kDifference)) / (2.0 * kDifference);
+  track.acceleration =
+      (motion(t + kDifference) + motion(t - kDifference) - 2.0 * motion(t)) / (kDifference * kDifference);
+  return track;
+}
+
+/// One track, watched for so long.
+struct Watched {
+  LearnedTrack learned;
+  LearnedRoom room;
+  Track last;
+  double t = 0.0;
+  bool fits = true;  // are made
+
+  template <typename Motion>
+  void watch(Motion motion, double until, std::uint64_t name = 1) {
+    for (; t <= until + 1e-9; t += kStep) {
+      last = exact(motion, t);
+      learned.observe(t, last, last, name, room);
+      if (fits && learned.fit_due() <= t) learned.fit(t, last, last);
+    }
+    t -= kStep;
+  }
+  [[nodiscard]] std::optional<Forecast> forecast(double now) const { return learned.forecast(now, t, last, room); }
+};
+
+TEST(HarmonicMotion, LaterIsTheSameMotion) {
+  HarmonicMotion motion;
+  motion.frequency = 0.8;
+  for (Eigen::Index i = 0; i < motion.terms.size(); ++i) motion.terms(i) = 0.1 * static_cast<double>(i) - 1.0;
+  const HarmonicMotion later = motion.later(1.3);
+  for (const double t : {0.0, 0.7, 5.0}) EXPECT_NEAR((later.position(t) - motion.position(1.3 + t)).norm(), 0.0, 1e-12);
+}
+
+TEST(BouncingMotion, FoldsBackAtEveryBound) {
+  BouncingMotion motion;
+  motion.begin = {1, 0, 0};
+  motion.velocity = {2, -1, 0.5};
+  motion.room.min = {0, -planner::base::kInfinity, -5};
+  motion.room.max = {3, planner::base::kInfinity, 1};
+  EXPECT_EQ(motion.first_turn().t, 1.0);
+  EXPECT_NEAR((motion.position(0.5) - Vec3(2, -0.5, 0.25)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((motion.position(2.0) - Vec3(1, -2, 1)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((motion.position(3.0) - Vec3(1, -3, 0.5)).norm(), 0.0, 1e-12);  // -1 folded to 1, 1.5 to 0.5
+}
+
+TEST(HarmonicFit, FindsATrefoilOutOfHalfAPeriod) {
+  std::vector<MotionSample> samples;
+  for (double t = 0.0; t <= 3.5; t += 0.1) {
+    const Track track = exact(trefoil, t);
+    samples.push_back({t, track.position, track.velocity});
+  }
+  const auto fit = fit_harmonics(samples, 0.01, 0.01);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->motion.frequency, 1.0 / 1.1, 0.05);
+  EXPECT_LT(fit->misfit, 1.0);
+  const double last = samples.back().t;
+  for (const double ahead : {0.5, 1.0, 1.5})
+    EXPECT_LT((fit->motion.position(ahead) - trefoil(last + ahead)).norm(), 0.1) << ahead;
+}
+
+TEST(HarmonicFit, AsksForAFewSamples) {
+  const std::vector<MotionSample> samples(kFewestSamples - 1);
+  EXPECT_FALSE(fit_harmonics(samples, 0.1, 0.1).has_value());
+}
+
+TEST(LearnedTrack, ForecastsWhatSwings) {
+  Watched watched;
+  watched.watch(swing, 5.0);
+  const auto forecast = watched.forecast(5.2);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_TRUE(forecast->replaces);
+  const planner::geometry::KnownPath path = to_path(*forecast, 3.0, 0.1);
+  ASSERT_TRUE(path.well_formed());
+  for (const double ahead : {0.0, 1.0, 2.0, 3.0})
+    EXPECT_LT((path.position(ahead) - swing(5.2 + ahead)).norm(), 0.05) << ahead;
+}
+
+TEST(LearnedTrack, ForecastsATrefoilWithinOnePeriod) {
+  Watched watched;
+  watched.watch(trefoil, 6.0);
+  const auto forecast = watched.forecast(6.0);
+  ASSERT_TRUE(forecast.has_value());
+  const planner::geometry::KnownPath path = to_path(*forecast, 2.0, 0.1);
+  for (const double ahead : {0.5, 1.0, 2.0}) EXPECT_LT((path.position(ahead) - trefoil(6.0 + ahead)).norm(), 0.25);
+}
+
+// Where measurements are exact, there is no need to wait for the better part of a period.
+TEST(LearnedTrack, ForecastsAnExactTrefoilSoon) {
+  Watched watched;
+  watched.watch(trefoil, 1.4);
+  const auto forecast = watched.forecast(1.4);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_TRUE(forecast->replaces);
+  const planner::geometry::KnownPath path = to_path(*forecast, 2.0, 0.1);
+  for (const double ahead : {0.5, 1.0}) EXPECT_LT((path.position(ahead) - trefoil(1.4 + ahead)).norm(), 0.15) << ahead;
+}
+
+TEST(LearnedTrack, PuzzlesUntilItIsUnderstood) {
+  Watched watched;
+  watched.watch(trefoil, 0.0);
+  EXPECT_TRUE(watched.learned.puzzling(0.0));
+  watched.t += kStep;
+  watched.watch(trefoil, 1.4);
+  EXPECT_FALSE(watched.learned.puzzling(1.4));
+  Watched steady;
+  steady.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 1.0);
+  EXPECT_FALSE(steady.learned.puzzling(1.0));
+}
+
+TEST(LearnedTrack, PuzzlesForAWhileOnly) {
+  // Thrown about at random: never understood.
+  Watched watched;
+  RandomStream random(5);
+  Vec3 push = Vec3::Zero();
+  Track track;
+  for (double t = 0.0; t < LearnedTrack::kPuzzle + 0.5; t += kStep) {
+    const Vec3 target(random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0));
+    push += 0.5 * (target - push);
+    track.acceleration = push;
+    track.velocity += kStep * push;
+    track.position += kStep * track.velocity;
+    watched.learned.observe(t, track, track, 1, watched.room);
+    if (watched.learned.fit_due() <= t) watched.learned.fit(t, track, track);
+    EXPECT_EQ(watched.learned.puzzling(t), t < LearnedTrack::kPuzzle && push.norm() > 0.0) << t;
+  }
+}
+
+TEST(LearnedTrack, LeavesSteadyMotionAlone) {
+  Watched watched;
+  watched.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 6.0);
+  EXPECT_FALSE(watched.forecast(6.0).has_value());
+}
+
+TEST(LearnedTrack, StopsBelievingWhenTheMotionIsAnother) {
+  Watched watched;
+  watched.watch(swing, 5.0);
+  ASSERT_TRUE(watched.forecast(5.0).has_value());
+  const Vec3 place = swing(5.0);
+  const Track before = exact(swing, 5.0);
+  watched.t += kStep;
+  watched.watch([&](double t) { return Vec3(place + (t - 5.0) * Vec3(before.velocity.x(), 3.0, 0.0)); }, 6.0);
+  const auto forecast = watched.forecast(6.0);
+  EXPECT_FALSE(forecast.has_value() && forecast->replaces);
+}
+
+/// Between -1 and 1 on y at 1 m/s, from `y` on.
+Vec3 bouncing(double t, double y) {
+  const double phase = std::fmod(y + 1.0 + t, 4.0);
+  return {0.5 * y, phase > 2.0 ? 3.0 - phase : phase - 1.0, 2.0};
+}
+
+TEST(LearnedTrack, KnowsWhereItTurnedBefore) {
+  Watched watched;
+  watched.watch([](double t) { return bouncing(t, 0.03); }, 4.0);  // turned at 0.97 and at 2.97
+  const auto forecast = watched.forecast(4.0);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_FALSE(forecast->replaces);  // it may as well go on
+  const planner::geometry::KnownPath path = to_path(*forecast, 3.0, 0.1);
+  EXPECT_LT((path.position(2.5) - bouncing(6.5, 0.03)).norm(), 0.1);
+}
+
+// The third time round, plain prediction no longer counts, until the track passes.
+TEST(LearnedTrack, ReliesOnATurnThatCameTwice) {
+  Watched watched;
+  watched.fits = false;
+  watched.watch([](double t) { return bouncing(t, 0.03); }, 6.0);  // at 0.97, 2.97 and 4.97
+  const auto forecast = watched.forecast(6.0);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_FALSE(forecast->replaces);  // on its way down, where it turned once
+  watched.t += kStep;
+  watched.watch([](double t) { return bouncing(t, 0.03); }, 8.0);
+  const auto again = watched.forecast(8.0);
+  ASSERT_TRUE(again.has_value());
+  EXPECT_TRUE(again->replaces);
+  EXPECT_LT((to_path(*again, 3.0, 0.1).position(2.5) - bouncing(10.5, 0.03)).norm(), 0.1);
+  const Vec3 place = bouncing(8.0, 0.03);
+  watched.t += kStep;
+  watched.watch([&](double t) { return Vec3(place + (t - 8.0) * Vec3::UnitY()); }, 9.5);  // and on beyond 1
+  EXPECT_FALSE(watched.forecast(9.5).has_value());
+}
+
+/// What the realistic tier's sensor makes of a motion, filtered as the track table does.
+struct Noisy {
+  LearnedTrack learned;
+  LearnedRoom room;
+  ImmFilter filter;
+  Track last;
+  RandomStream random{3};
+
+  /// A fit at most every `pause` seconds.
+  template <typename Motion>
+  void observe(Motion motion, double t, double pause) {
+    constexpr double kPositionSigma = 0.1, kVelocitySigma = 0.3;
+    Track measured = exact(motion, t);
+    measured.acceleration.setZero();
+    measured.position_sigma = kPositionSigma;
+    measured.velocity_sigma = kVelocitySigma;
+    const auto noise = [&] {
+      const double x = random.normal();
+      const double y = random.normal();
+      return Vec3(x, y, random.normal());
+    };
+    measured.position += kPositionSigma * noise();
+    measured.velocity += kVelocitySigma * noise();
+    last = measured;
+    filter.update(kStep, measured);
+    filter.apply(last);
+    learned.observe(t, measured, last, 1, room);
+    if (learned.fit_due() > t || t < fitted_ + pause) return;
+    learned.fit(t, measured, last);
+    fitted_ = t;
+  }
+
+ private:
+  double fitted_ = -1.0;
+};
+
+// In a crowd the fits come in turn, each track's more than a trial apart. What has proved right stays believed between.
+TEST(LearnedTrack, IsBelievedBetweenFitsThatAreRare) {
+  Noisy noisy;
+  int believed = 0, asked = 0;
+  for (double t = 0.0; t < 24.0; t += kStep) {
+    noisy.observe(swing, t, 1.3);
+    if (t < 16.0) continue;
+    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.room);
+    ++asked;
+    believed += forecast && forecast->replaces ? 1 : 0;
+  }
+  EXPECT_GT(believed, 9 * asked / 10);
+}
+
+// Every measurement counts: of 64 single ones, the rest left out, the forecast would be off by 0.051 m.
+TEST(LearnedTrack, ForecastsMoreExactlyThanItIsMeasured) {
+  Noisy noisy;
+  double squares = 0.0;
+  int asked = 0;
+  for (double t = 0.0; t < 20.0; t += kStep) {
+    noisy.observe(swing, t, 0.0);
+    if (t < 12.0) continue;
+    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.room);
+    if (!forecast || !forecast->replaces) continue;
+    ++asked;
+    squares += (to_path(*forecast, 1.0, 0.1).position(1.0) - swing(t + 1.0)).squaredNorm();
+  }
+  ASSERT_GT(asked, 100);
+  EXPECT_LT(std::sqrt(squares / asked), 0.045);
+}
+
+TEST(LearnedRoom, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
+  LearnedRoom room;
+  room.saw({0, 2.6, 0}, 0.4);
+  room.turned(1, 1, true, 3.0);
+  EXPECT_EQ(room.bounds(0.4).max.y(), planner::base::kInfinity);  // one alone proves nothing
+  room.turned(1, 1, true, 3.0);
+  EXPECT_EQ(room.bounds(0.4).max.y(), planner::base::kInfinity);
+  room.turned(2, 1, true, 3.02);
+  EXPECT_NEAR(room.bounds(0.2).max.y(), 2.8, 1e-12);
+  EXPECT_EQ(room.bounds(0.2).min.y(), -planner::base::kInfinity);
+  room.saw({0, 3.5, 0}, 0.4);
+  EXPECT_EQ(room.bounds(0.4).max.y(), planner::base::kInfinity);
+}
+
+TEST(LearnedTrack, TurnsWhereOthersTurned) {
+  LearnedRoom room;
+  for (const std::uint64_t name : {1U, 2U}) {
+    LearnedTrack learned;
+    for (double t = 0.0; t < 1.5; t += kStep) {
+      const double y = 0.03 * static_cast<double>(name);
+      const Track track = exact([y](double s) { return bouncing(s, y); }, t);
+      learned.observe(t, track, track, name, room);
+    }
+  }
+  LearnedTrack third;
+  const Track track = exact([](double t) { return bouncing(t, -0.5); }, 0.0);
+  third.observe(0.0, track, track, 3, room);
+  const auto forecast = third.forecast(0.0, 0.0, track, room);
+  ASSERT_TRUE(forecast.has_value());
+  EXPECT_LT((to_path(*forecast, 3.0, 0.1).position(2.5) - bouncing(2.5, -0.5)).norm(), 0.1);
+}
+
+TEST(ObstaclesOf, AForecastReplacesItsTrackOrStandsBesideIt) {
+  std::vector<Track> tracks(3);
+  for (std::size_t i = 0; i < 3; ++i) tracks[i].id = 10 + i;
+  Forecast replacing;
+  replacing.track = 1;
+  replacing.motion = HarmonicMotion{};
+  replacing.replaces = true;
+  Forecast beside;
+  beside.track = 2;
+  beside.motion = BouncingMotion{};
+  const std::vector<Forecast> forecasts{replacing, beside};
+  const Obstacles obstacles = obstacles_of(tracks, forecasts, {}, 2.0, 0.1);
+  ASSERT_EQ(obstacles.tracks.size(), 2U);
+  EXPECT_EQ(obstacles.tracks[0].id, 10U);
+  EXPECT_EQ(obstacles.tracks[1].id, 12U);
+  ASSERT_EQ(obstacles.paths.size(), 2U);
+  EXPECT_EQ(obstacles.paths[0].id, 11U);
+  EXPECT_EQ(obstacles.paths[1].id, 12U);
+  EXPECT_NEAR(obstacles.paths[0].points.back().t, 2.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace jink::bridge::prediction

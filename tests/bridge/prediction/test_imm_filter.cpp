@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/prediction/imm_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "planner/base/random.hpp"
+
+namespace jink::bridge::prediction {
+namespace {
+
+using planner::base::RandomStream;
+using planner::base::Track;
+
+constexpr double kStep = 0.05;          // s
+constexpr double kPositionSigma = 0.1;  // m
+constexpr double kVelocitySigma = 0.3;  // m/s
+
+Vec3 noise(RandomStream& random, double sigma) {
+  const double x = random.normal();
+  const double y = random.normal();
+  return sigma * Vec3(x, y, random.normal());
+}
+
+Track measured(const Vec3& position, const Vec3& velocity, RandomStream& random) {
+  Track track;
+  track.position = position + noise(random, kPositionSigma);
+  track.velocity = velocity + noise(random, kVelocitySigma);
+  track.position_sigma = kPositionSigma;
+  track.velocity_sigma = kVelocitySigma;
+  return track;
+}
+
+/// Mean squares of the errors from `from` on, in units of the measurement's and of the sigmas that the filter states.
+struct Errors {
+  double position = 0.0, velocity = 0.0, stated_position = 0.0, stated_velocity = 0.0;
+};
+
+Errors follow(const std::function<Vec3(double)>& position, const std::function<Vec3(double)>& velocity, double from,
+              double to) {
+  Errors errors;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed);
+    ImmFilter filter;
+    for (double t = 0.0; t < to; t += kStep) {
+      Track track = measured(position(t), velocity(t), random);
+      filter.update(kStep, track);
+      filter.apply(track);
+      if (t < from) continue;
+      const double p = (track.position - position(t)).squaredNorm() / 3.0;
+      const double v = (track.velocity - velocity(t)).squaredNorm() / 3.0;
+      errors.position += p / (kPositionSigma * kPositionSigma);
+      errors.velocity += v / (kVelocitySigma * kVelocitySigma);
+      errors.stated_position += p / (track.position_sigma * track.position_sigma);
+      errors.stated_velocity += v / (track.velocity_sigma * track.velocity_sigma);
+      ++count;
+    }
+  }
+  return {errors.position / count, errors.velocity / count, errors.stated_position / count,
+          errors.stated_velocity / count};
+}
+
+TEST(ImmFilter, TakesTheFirstMeasurementAsItIs) {
+  RandomStream random(1);
+  const Track first = measured({1, 2, 3}, {4, 5, 6}, random);
+  ImmFilter filter;
+  filter.update(0.0, first);
+  Track track = first;
+  filter.apply(track);
+  EXPECT_TRUE(track.position.isApprox(first.position, 1e-12));
+  EXPECT_TRUE(track.velocity.isApprox(first.velocity, 1e-12));
+  EXPECT_NEAR(track.position_sigma, kPositionSigma, 1e-12);
+  EXPECT_NEAR(track.velocity_sigma, kVelocitySigma, 1e-12);
+}
+
+TEST(ImmFilter, KnowsSteadyMotionMuchBetterThanItIsMeasured) {
+  const Errors errors = follow([](double t) { return Vec3(2.0 * t, 1.0 - t, 3.0); },
+                               [](double) { return Vec3(2.0, -1.0, 0.0); }, 2.0, 8.0);
+  EXPECT_LT(errors.position, 0.3);
+  EXPECT_LT(errors.velocity, 0.1);
+  // What it states is no better than it is.
+  EXPECT_LT(errors.stated_position, 1.2);
+  EXPECT_LT(errors.stated_velocity, 1.2);
+}
+
+TEST(ImmFilter, FollowsAMotionThatSwings) {
+  constexpr double kFrequency = 1.2;
+  const Errors errors =
+      follow([](double t) { return Vec3(2.0 * std::sin(kFrequency * t), 0.0, 1.0); },
+             [](double t) { return Vec3(2.0 * kFrequency * std::cos(kFrequency * t), 0.0, 0.0); }, 2.0, 8.0);
+  EXPECT_LT(errors.position, 0.8);
+  EXPECT_LT(errors.velocity, 0.6);
+  EXPECT_LT(errors.stated_position, 1.5);
+}
+
+TEST(ImmFilter, BeginsAnewAfterABounce) {
+  RandomStream random(3);
+  ImmFilter filter;
+  Track track;
+  for (int k = 0; k < 60; ++k) {
+    const double x = 2.0 * kStep * k;
+    const bool back = k >= 40;
+    track = measured({back ? 8.0 - x : x, 0, 0}, {back ? -2.0 : 2.0, 0, 0}, random);
+    filter.update(kStep, track);
+    filter.apply(track);
+    if (k == 42) {
+      EXPECT_LT((track.velocity - Vec3(-2, 0, 0)).norm(), 1.0);
+    }
+  }
+  EXPECT_LT((track.velocity - Vec3(-2, 0, 0)).norm(), 0.3);
+  EXPECT_LT((track.position - Vec3(2.1, 0, 0)).norm(), 0.2);
+}
+
+TEST(ImmFilter, BeginsAnewAfterALongGap) {
+  RandomStream random(4);
+  ImmFilter filter;
+  for (int k = 0; k < 40; ++k) filter.update(kStep, measured({0, 0, 0}, {0, 0, 0}, random));
+  Track track = measured({50, 0, 0}, {3, 0, 0}, random);
+  const Track raw = track;
+  filter.update(5.0, track);
+  filter.apply(track);
+  EXPECT_TRUE(track.position.isApprox(raw.position, 1e-12));
+}
+
+TEST(ImmFilter, NeverClaimsFarMoreThanItsInput) {
+  ImmFilter filter;
+  Track track;
+  track.position_sigma = 0.1;
+  for (int k = 0; k < 400; ++k) {
+    Track same = track;  // a writer that filters already: no noise at all
+    filter.update(kStep, same);
+    filter.apply(same);
+    EXPECT_GE(same.position_sigma, ImmFilter::kLeastShare * 0.1);
+    EXPECT_TRUE(same.position.allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace jink::bridge::prediction

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The end: arrival, landing, interruption, the hand-over to HOLD.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/bridge/supervisor/supervisor_flight.hpp"
+
+namespace jink::bridge::supervisor {
+namespace {
+
+using Motion = Decision::Motion;
+using testing::Flight;
+
+// ---- the end
+
+TEST(Supervisor, InterruptInTheLandingEndsInHold) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly();
+  flight.picture.at_target = true;
+  flight.turn();
+  flight.turn();
+  flight.state.mode = vehicle::FlightMode::kLand;
+  flight.run(1.0);
+  flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);  // no setpoints, which are not flown in LAND
+  EXPECT_EQ(flight.requests.back(), vehicle::Command::kHold);
+  EXPECT_FALSE(flight.supervisor.done());
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "interrupted");
+}
+
+TEST(Supervisor, TheTimeLimitEndsInHold) {
+  Flight flight;
+  flight.fly().run(99.5);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
+  flight.run(1.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kStopping);
+  flight.picture.at_rest = true;
+  flight.run(1.0);
+  EXPECT_EQ(flight.requests.back(), vehicle::Command::kHold);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kTimeout);
+  EXPECT_NE(flight.supervisor.reason().find("time limit"), std::string::npos);
+}
+
+TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
+  Flight flight;
+  flight.fly().picture.at_target = true;
+  flight.turn();
+  EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
+}
+
+TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
+  Flight flight;
+  flight.fly().positions = false;
+  flight.run(0.6);
+  flight.picture.at_target = true;
+  EXPECT_EQ(flight.turn().motion, Motion::kBrake);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
+}
+
+TEST(Supervisor, ArrivalByLandingIsReachedOnTheGroundDisarmed) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly().picture.at_target = true;
+  flight.turn();
+  EXPECT_EQ(flight.turn().request, vehicle::Command::kLand);
+  flight.state.mode = vehicle::FlightMode::kLand;
+  EXPECT_EQ(flight.run(3.0).motion, Motion::kNone);  // the autopilot's now
+  EXPECT_FALSE(flight.supervisor.done());
+  flight.state.in_air = false;
+  flight.run(1.0);
+  EXPECT_FALSE(flight.supervisor.done());
+  flight.state.armed = false;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
+  EXPECT_EQ(flight.asked(vehicle::Command::kLand), 1);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 0);
+}
+
+TEST(Supervisor, ALandingTakenOverIsNoArrival) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly().picture.at_target = true;
+  flight.run(0.1);
+  flight.state.mode = vehicle::FlightMode::kLand;
+  flight.run(1.0);
+  flight.state.mode = vehicle::FlightMode::kPosition;
+  EXPECT_EQ(flight.turn().motion, Motion::kNone);
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_NE(flight.supervisor.reason().find("taken over: mode position"), std::string::npos);
+}
+
+TEST(Supervisor, ALandingThatDoesNotEndIsReported) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly().picture.at_target = true;
+  flight.run(0.1);
+  flight.state.mode = vehicle::FlightMode::kLand;
+  flight.run(95.0);
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_NE(flight.supervisor.reason().find("did not end"), std::string::npos);
+}
+
+TEST(Supervisor, ALandingThatIsRefusedEndsInHold) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly().picture.at_target = true;
+  flight.turn();
+  while (flight.asked(vehicle::Command::kHold) == 0 && flight.now < 60.0) {
+    flight.refuse(vehicle::Command::kLand, "denied");
+    ASSERT_NE(flight.turn().motion, Motion::kNone);
+  }
+  EXPECT_EQ(flight.asked(vehicle::Command::kLand), 5);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "target reached, but the autopilot does not land: land refused: denied");
+}
+
+TEST(Supervisor, HoldNeverConfirmedIsAskedForAgainAndThenSaid) {
+  for (const bool arrived : {true, false}) {
+    SCOPED_TRACE(arrived);
+    Flight flight;
+    flight.fly().picture.at_rest = true;
+    if (arrived) {
+      flight.picture.at_target = true;
+    } else {
+      flight.supervisor.stop(flight.now, Outcome::kTimeout, "too late");
+    }
+    while (!flight.supervisor.done() && flight.now < 60.0) {
+      flight.turn();
+      if (!flight.supervisor.done()) {
+        EXPECT_NE(flight.supervisor.phase(), Phase::kDone);
+      }
+    }
+    EXPECT_EQ(flight.asked(vehicle::Command::kHold), 5);
+    EXPECT_EQ(flight.supervisor.outcome(), arrived ? Outcome::kAborted : Outcome::kTimeout);
+    EXPECT_NE(flight.supervisor.reason().find("HOLD was never confirmed"), std::string::npos);
+  }
+}
+
+TEST(Supervisor, StoppingWaitsForRestButNotForEver) {
+  Flight flight;
+  flight.stop().run(3.5);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kStopping);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 0);
+  flight.run(1.0);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
+  Flight rests;
+  rests.stop().picture.at_rest = true;
+  rests.run(0.25);
+  EXPECT_EQ(rests.asked(vehicle::Command::kHold), 0);
+  rests.run(0.2);
+  EXPECT_EQ(rests.asked(vehicle::Command::kHold), 1);
+}
+
+TEST(Supervisor, TheFirstReasonToStopStands) {
+  Flight flight;
+  flight.stop().turn();
+  flight.supervisor.stop(flight.now, Outcome::kTimeout, "later");
+  flight.picture.at_rest = true;
+  flight.run(0.5);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "interrupted");
+}
+
+}  // namespace
+}  // namespace jink::bridge::supervisor

@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/horizon_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/open_loop.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+base::Track sphere(std::uint64_t id, const Vec3& position, const Vec3& velocity, double radius = 0.5) {
+  base::Track track;
+  track.id = id;
+  track.position = position;
+  track.velocity = velocity;
+  track.radius = radius;
+  return track;
+}
+
+PathRequest request(const std::vector<base::Track>& tracks) {
+  PathRequest r;
+  r.position = {0, 0, 2};
+  r.velocity = {2, 0, 0};
+  r.target = {20, 0, 2};
+  r.volume = {{-5, -10, 0.3}, {25, 10, 8}};
+  r.tracks = tracks;
+  r.margin = base::HorizonSettings{}.margin;
+  return r;
+}
+
+/// Spheres of radius 1 side by side across the straight line at x = 8, with a way round at the sides alone.
+std::vector<base::Track> wall() {
+  std::vector<base::Track> tracks;
+  std::uint64_t id = 1;
+  for (const double z : {0.5, 2.0, 3.5, 5.0, 6.5}) {
+    for (double y = -3.0; y <= 3.0; y += 1.5) tracks.push_back(sphere(id++, {8, y, z}, {0, 0, 0}, 1.0));
+  }
+  return tracks;
+}
+
+verify::Plan plan_once(const PathRequest& r, int threads = 2, const base::TimedPath& previous = {},
+                       std::uint64_t seed = 1) {
+  base::WorkerPool pool(threads);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  return planner.plan(r, previous, seed, 0, {base::HorizonSettings{}.generations, base::Budget::Time::max()}, pool);
+}
+
+verify::Verification check(const PathRequest& r, const base::TimedPath& path, double until = base::kInfinity) {
+  return verify::verify({path, r.tracks, 0.0, r.vehicle.radius, r.volume, r.acceleration_trust, until});
+}
+
+void expect_same_path(const base::TimedPath& a, const base::TimedPath& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t, b[i].t);
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].velocity, b[i].velocity);
+    EXPECT_EQ(a[i].acceleration, b[i].acceleration);
+  }
+}
+
+struct Case {
+  const char* name;
+  std::vector<base::Track> tracks;
+};
+
+std::vector<Case> blocked_lines() {
+  return {{"head-on", {sphere(1, {16, 0, 2}, {-2, 0, 0}, 0.8)}},
+          {"crossing", {sphere(1, {7.5, -5, 2}, {0, 2, 0}, 0.8)}},
+          {"wall", wall()}};
+}
+
+TEST(HorizonPlanner, PlansAroundWhatBlocksTheStraightLine) {
+  for (const Case& c : blocked_lines()) {
+    const PathRequest r = request(c.tracks);
+    const base::TimedPath straight{{0, r.position, r.velocity, Vec3::Zero()},
+                                   {20.0 / 3.0, r.target, r.velocity, Vec3::Zero()}};
+    ASSERT_FALSE(check(r, straight).free()) << c.name;  // the case is one
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const verify::Plan plan = plan_once(r, 2, {}, seed);
+      ASSERT_TRUE(plan.status == verify::PlanStatus::kReaches || plan.status == verify::PlanStatus::kProgresses)
+          << c.name;
+      EXPECT_TRUE(check(r, plan.path, 6.0).free()) << c.name;
+      EXPECT_EQ(plan.status == verify::PlanStatus::kReaches, check(r, plan.path).free()) << c.name;
+      EXPECT_EQ(plan.path.front().position, r.position);
+      EXPECT_EQ(plan.path.front().t, 0.0);
+      EXPECT_EQ(plan.path.back().position, r.target) << c.name;
+      EXPECT_FALSE(plan.kept_previous);
+    }
+  }
+}
+
+TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
+  const std::vector<base::Track> none;
+  const PathRequest r = request(none);
+  const verify::Plan plan = plan_once(r);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
+  EXPECT_LT(base::path_length(plan.path), 20.0 * 1.01);
+  EXPECT_FALSE(plan.emergency);
+}
+
+TEST(HorizonPlanner, SearchesForAllItsGenerations) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(tracks);
+  const verify::Plan plan = plan_once(r);
+  const base::HorizonSettings defaults;
+  EXPECT_EQ(plan.evaluations, defaults.generations * defaults.population);
+  EXPECT_EQ(plan.generations, defaults.generations);
+}
+
+TEST(HorizonPlanner, SameBitsForAnyNumberOfThreads) {
+  for (const Case& c : blocked_lines()) {
+    const PathRequest r = request(c.tracks);
+    const verify::Plan one = plan_once(r, 1);
+    for (const int threads : {2, 8}) {
+      const verify::Plan plan = plan_once(r, threads);
+      expect_same_path(plan.path, one.path);
+      EXPECT_EQ(plan.front, one.front);
+      EXPECT_EQ(plan.status, one.status);
+    }
+  }
+}
+
+TEST(HorizonPlanner, DoesNotDependOnEarlierPlans) {
+  const std::vector<Case> cases = blocked_lines();
+  base::WorkerPool pool(1);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  const base::Budget budget{base::HorizonSettings{}.generations, base::Budget::Time::max()};
+  const PathRequest wall_request = request(cases[2].tracks);
+  const PathRequest crossing_request = request(cases[1].tracks);
+  planner.plan(wall_request, {}, 5, 17, budget, pool);
+  expect_same_path(planner.plan(crossing_request, {}, 1, 0, budget, pool).path, plan_once(crossing_request).path);
+}
+
+TEST(HorizonPlanner, KeepsThePreviousPlanWhereNothingIsClearlyBetter) {
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = request(tracks);
+  const verify::Plan first = plan_once(r);
+  const verify::Plan second = plan_once(r, 2, first.path, 2);
+  EXPECT_TRUE(second.kept_previous);
+  expect_same_path(second.path, first.path);
+}
+
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsNoLongerFree) {
+  const std::vector<base::Track> none;
+  const verify::Plan first = plan_once(request(none));
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = request(tracks);
+  ASSERT_FALSE(check(r, first.path).free());
+  const verify::Plan second = plan_once(r, 2, first.path);
+  EXPECT_FALSE(second.kept_previous);
+  EXPECT_TRUE(check(r, second.path, 6.0).free());
+}
+
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsClearlyWorse) {
+  const std::vector<base::Track> none;
+  const PathRequest r = request(none);
+  const base::TimedPath detour{{0, r.position, r.velocity, Vec3::Zero()},
+                               {5, {10, 8, 2}, Vec3::Zero(), Vec3::Zero()},
+                               {10, r.target, Vec3::Zero(), Vec3::Zero()}};
+  const verify::Plan plan = plan_once(r, 2, detour);
+  EXPECT_FALSE(plan.kept_previous);
+  EXPECT_LT(base::path_length(plan.path), 20.2);
+}
+
+// Past the wall at less than its uncertainty asks for, but more than the margin; the search, which cannot go so
+// far aside, waits in front of it with all the clearance that anybody asks for.
+TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
+  std::vector<base::Track> tracks = wall();
+  std::erase_if(tracks, [](const base::Track& track) { return track.position.y() > 0.0; });
+  PathRequest r = request(tracks);
+  r.track_acceleration = base::HorizonSettings{}.track_acceleration;
+  const double aside = 1.0 + r.vehicle.radius + r.margin + 0.02;
+  base::TimedPath past;
+  for (double x = 0.0; x < 20.0; x += 0.2) {
+    const double share = std::clamp(std::min(x, 16.0 - x) / 6.0, 0.0, 1.0);
+    past.push_back({x / 2.5, {x, aside * share * share * (3.0 - 2.0 * share), 2}, Vec3::Zero(), Vec3::Zero()});
+  }
+  past.push_back({8.0, r.target, Vec3::Zero(), Vec3::Zero()});
+  ASSERT_GE(check(r, past).min_clearance, r.margin);
+  base::HorizonSettings narrow;
+  narrow.lateral_range = 0.5;
+  narrow.weight_clearance = 1.0;
+  narrow.weight_length = 0.1;
+  base::WorkerPool pool(2);
+  HorizonPlanner planner(narrow);
+  const verify::Plan found = planner.plan(r, {}, 1, 0, {narrow.generations}, pool);
+  ASSERT_LT(found.path[60].position.x(), 8.0);
+  const verify::Plan plan = planner.plan(r, past, 1, 0, {narrow.generations}, pool);
+  EXPECT_TRUE(plan.kept_previous);
+}
+
+// What asks for more than the acceleration that plans normally use gets it, and says so: a sphere of 1.5 m at 8 m/s,
+// met in 0.85 s.
+TEST(HorizonPlanner, UsesMoreAccelerationWhereNothingElseHelps) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0, 2}, {-8, 0, 0}, 1.5)};
+  const PathRequest r = request(tracks);
+  const verify::Plan plan = plan_once(r);
+  EXPECT_TRUE(plan.emergency);
+  EXPECT_TRUE(check(r, plan.path, 6.0).free());
+  base::HorizonSettings calm;
+  calm.emergency_share = calm.acceleration_share;
+  base::WorkerPool pool(2);
+  const verify::Plan without = HorizonPlanner(calm).plan(r, {}, 1, 0, {calm.generations}, pool);
+  EXPECT_FALSE(without.emergency);
+  EXPECT_LT(without.verification.min_clearance, plan.verification.min_clearance);
+}
+
+// Faster than the vehicle can get out of the way of: a sphere of 6 m at 14 m/s, 10 m ahead.
+TEST(HorizonPlanner, GivesTheLeastBadManoeuvreWhereNothingIsFree) {
+  const std::vector<base::Track> tracks{sphere(1, {16, 0, 2}, {-14, 0, 0}, 6.0)};
+  PathRequest r = request(tracks);
+  const verify::Plan plan = plan_once(r);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kBlocked);
+  ASSERT_TRUE(plan.verification.first_contact.has_value());
+  const base::TimedPath straight{{0, r.position, r.velocity, Vec3::Zero()},
+                                 {10, {20, 0, 2}, Vec3::Zero(), Vec3::Zero()}};
+  EXPECT_GT(*plan.verification.first_contact, *check(r, straight).first_contact);  // it stays free for longer
+}
+
+TEST(HorizonPlanner, DropsAPreviousPlanThatIsHitSoonerWhereNothingIsFree) {
+  const std::vector<base::Track> tracks{sphere(1, {16, 0, 2}, {-14, 0, 0}, 6.0)};
+  const PathRequest r = request(tracks);
+  const base::TimedPath into_it{{0, r.position, r.velocity, Vec3::Zero()}, {5, r.target, Vec3::Zero(), Vec3::Zero()}};
+  const verify::Plan plan = plan_once(r, 2, into_it);
+  EXPECT_FALSE(plan.kept_previous);
+  EXPECT_GT(*plan.verification.first_contact, *check(r, into_it).first_contact);
+}
+
+TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<base::Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};
+  PathRequest r = request(tracks);
+  r.velocity.y() = nan;
+  EXPECT_EQ(plan_once(r).status, verify::PlanStatus::kInvalid);
+  EXPECT_TRUE(plan_once(r).path.empty());
+  r = request(tracks);
+  r.target.z() = base::kInfinity;
+  EXPECT_EQ(plan_once(r).status, verify::PlanStatus::kInvalid);
+  tracks[0].age = nan;
+  EXPECT_EQ(plan_once(request(tracks)).status, verify::PlanStatus::kInvalid);
+}
+
+TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
+  base::HorizonSettings s;
+  s.population = 1;
+  EXPECT_THROW(HorizonPlanner{s}, std::invalid_argument);
+}
+
+TEST(HorizonPlanner, ExpiredDeadlineStillGivesAPlan) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(tracks);
+  base::WorkerPool pool(1);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  const verify::Plan plan = planner.plan(r, {}, 1, 0, {40, base::Budget::Time::min()}, pool);
+  EXPECT_TRUE(plan.deadline_reached);
+  EXPECT_EQ(plan.schedule, 40);
+  EXPECT_EQ(plan.generations, 1);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
+}
+
+// With a pace known, a deadline becomes a number of generations, and with that number the plan is repeated.
+TEST(HorizonPlanner, PlanUnderADeadlineIsRepeatedByItsSchedule) {
+  const std::vector<base::Track> tracks = wall();
+  const PathRequest r = request(tracks);
+  base::WorkerPool pool(2);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  planner.plan(r, {}, 1, 0, {40}, pool);
+  const auto soon = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
+  const verify::Plan cut = planner.plan(r, {}, 1, 1, {1000000, soon}, pool);
+  EXPECT_LT(cut.schedule, 1000000);
+  EXPECT_LE(cut.generations, cut.schedule);
+  const verify::Plan again = HorizonPlanner{base::HorizonSettings{}}.repeat(r, {}, 1, 1, cut.searches, pool);
+  expect_same_path(again.path, cut.path);
+  EXPECT_EQ(again.searches, cut.searches);
+}
+
+// The search with more acceleration goes its own way under a deadline. Here that has passed already: the first search,
+// which knows no pace, is stopped after one of its 40 generations, the second is scheduled for one.
+TEST(HorizonPlanner, RepeatsTheSearchWithMoreAccelerationAsFarAsItWent) {
+  const std::vector<base::Track> tracks{sphere(1, {16, 0, 2}, {-14, 0, 0}, 6.0)};
+  const PathRequest r = request(tracks);
+  base::WorkerPool pool(2);
+  const verify::Plan cut =
+      HorizonPlanner{base::HorizonSettings{}}.plan(r, {}, 1, 0, {40, std::chrono::steady_clock::now()}, pool);
+  ASSERT_EQ(cut.searches[0], (verify::SearchExtent{40, 1}));
+  ASSERT_EQ(cut.searches[1], (verify::SearchExtent{1, 1}));
+  HorizonPlanner other{base::HorizonSettings{}};
+  const verify::Plan again = other.repeat(r, {}, 1, 0, cut.searches, pool);
+  expect_same_path(again.path, cut.path);
+  EXPECT_EQ(again.status, cut.status);
+  EXPECT_EQ(again.searches, cut.searches);
+}
+
+// Undisturbed flight is the shortest: where it keeps every clearance there is nothing to search for.
+TEST(HorizonPlanner, SearchesNothingWhereUndisturbedFlightIsTheAnswer) {
+  const std::vector<base::Track> far{sphere(1, {8, 9, 2}, Vec3::Zero(), 0.5)};
+  const PathRequest r = request(far);
+  base::WorkerPool pool(1);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  const verify::Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
+  EXPECT_EQ(plan.evaluations, 0);
+  EXPECT_EQ(plan.searches, (std::array<verify::SearchExtent, 2>{}));
+  EXPECT_NEAR(base::path_length(plan.path), (r.target - r.position).norm(), 1e-6);
+  expect_same_path(planner.repeat(r, {}, 1, 0, plan.searches, pool).path, plan.path);
+}
+
+TEST(HorizonPlanner, KeepsWithoutASearchWhatNoSearchCouldReplace) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0.9, 2}, Vec3::Zero(), 0.4)};
+  const PathRequest r = request(tracks);
+  base::WorkerPool pool(1);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  const verify::Plan first = planner.plan(r, {}, 1, 0, {40}, pool);
+  ASSERT_GT(first.evaluations, 0);
+  ASSERT_EQ(first.status, verify::PlanStatus::kReaches);
+  const verify::Plan second = planner.plan(r, first.path, 1, 1, {40}, pool);
+  EXPECT_TRUE(second.kept_previous);
+  EXPECT_EQ(second.evaluations, 0);
+  expect_same_path(second.path, first.path);
+}
+
+verify::Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {
+  base::WorkerPool pool(threads);
+  return plan_open_loop({}, {}, {r, time_limit, commit}, 1, {40, base::Budget::Time::max()}, pool);
+}
+
+PathRequest from_rest(const std::vector<base::Track>& tracks) {
+  PathRequest r = request(tracks);
+  r.velocity = Vec3::Zero();
+  return r;
+}
+
+void expect_flyable(const verify::Plan& plan, const PathRequest& r) {
+  ASSERT_FALSE(plan.path.empty());
+  EXPECT_EQ(plan.path.front().t, 0.0);
+  EXPECT_EQ(plan.path.front().position, r.position);
+  for (std::size_t i = 0; i < plan.path.size(); ++i) {
+    EXPECT_TRUE(r.volume.contains(plan.path[i].position, 1e-9));
+    if (i == 0) continue;
+    const double dt = plan.path[i].t - plan.path[i - 1].t;
+    ASSERT_GT(dt, 1e-6);
+    EXPECT_LE((plan.path[i].position - plan.path[i - 1].position).norm(), r.vehicle.max_speed * dt + 1e-9);
+  }
+}
+
+TEST(PlanOpenLoop, ReachesTheTargetFreeContinuousAndInsideTheVolume) {
+  std::vector<Case> cases = blocked_lines();
+  cases.push_back({"accelerating", {sphere(1, {10, -12, 2}, {0, 0, 0}, 0.8)}});
+  cases.back().tracks[0].acceleration = {0, 1.5, 0};
+  for (const Case& c : cases) {
+    const PathRequest r = from_rest(c.tracks);
+    const verify::Plan plan = open_loop(r);
+    EXPECT_EQ(plan.status, verify::PlanStatus::kReaches) << c.name << ": " << verify::to_string(plan.status);
+    EXPECT_TRUE(check(r, plan.path).free()) << c.name;
+    EXPECT_EQ(plan.path.back().position, r.target) << c.name;
+    expect_flyable(plan, r);
+  }
+}
+
+TEST(PlanOpenLoop, CommitNeedNotBeAWholeNumberOfSteps) {
+  const std::vector<base::Track> tracks = blocked_lines()[0].tracks;
+  const PathRequest r = from_rest(tracks);
+  const verify::Plan plan = open_loop(r, 2, 60.0, 0.33);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
+  expect_flyable(plan, r);
+}
+
+TEST(PlanOpenLoop, SameBitsForAnyNumberOfThreads) {
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = from_rest(tracks);
+  const verify::Plan one = open_loop(r, 1);
+  for (const int threads : {2, 8}) expect_same_path(open_loop(r, threads).path, one.path);
+}
+
+TEST(PlanOpenLoop, SaysThatTheStartIsBlocked) {
+  const std::vector<base::Track> tracks{sphere(1, {0.5, 0, 2}, {0, 0, 0})};
+  const verify::Plan plan = open_loop(from_rest(tracks));
+  EXPECT_EQ(plan.status, verify::PlanStatus::kStartBlocked);
+  EXPECT_EQ(plan.path.size(), 1U);
+}
+
+// The target is inside a resting sphere: the vehicle comes near and waits clear of it.
+TEST(PlanOpenLoop, DoesNotReachABlockedTarget) {
+  const std::vector<base::Track> tracks{sphere(1, {20, 0, 2}, {0, 0, 0}, 1.0)};
+  const PathRequest r = from_rest(tracks);
+  const verify::Plan plan = open_loop(r, 2, 15.0);
+  EXPECT_NE(plan.status, verify::PlanStatus::kReaches);
+  EXPECT_TRUE(plan.verification.free());
+  EXPECT_LT((plan.path.back().position - r.target).norm(), 15.0);  // of 20; how near depends on the tuning
+  EXPECT_LE(plan.path.back().t, 15.0 + 0.5 + 1e-9);
+}
+
+// No time for more than one plan: what that one has verified is the result, not the half second that is committed to.
+TEST(PlanOpenLoop, ExpiredDeadlineStillGivesAFreePath) {
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  PathRequest r = from_rest(tracks);
+  r.target = {60, 0, 2};  // farther than a plan looks
+  r.volume.max.x() = 65;
+  base::WorkerPool pool(1);
+  const verify::Plan plan = plan_open_loop({}, {}, {r, 60.0, 0.5}, 1, {40, base::Budget::Time::min()}, pool);
+  EXPECT_TRUE(plan.deadline_reached);
+  EXPECT_TRUE(check(r, plan.path).free());
+  EXPECT_GE(plan.path.back().t, 6.0 - 1e-9);
+  expect_flyable(plan, r);
+}
+
+TEST(PlanOpenLoop, RefusesNumbersThatAreNotFinite) {
+  std::vector<base::Track> tracks{sphere(1, {8, 0, 2}, {0, 0, 0})};
+  tracks[0].position.x() = std::numeric_limits<double>::quiet_NaN();
+  const verify::Plan plan = open_loop(from_rest(tracks));
+  EXPECT_EQ(plan.status, verify::PlanStatus::kInvalid);
+  EXPECT_TRUE(plan.path.empty());
+}
+
+}  // namespace
+
+// A sphere sweeps the target two seconds after the vehicle could be there: to have arrived is not to be safe.
+TEST(HorizonPlanner, WhoHasArrivedIsStillWatchedUntilTheHorizonEnds) {
+  HorizonPlanner planner{base::HorizonSettings{}};
+  base::WorkerPool pool(2);
+  PathRequest request;
+  request.position = {0, 0, 5};
+  request.target = {0.5, 0, 5};
+  base::Track sweeper;
+  sweeper.id = 1;
+  sweeper.position = {0.25, -12, 5};
+  sweeper.velocity = {0, 4, 0};
+  sweeper.radius = 0.6;
+  const std::vector<base::Track> tracks{sweeper};
+  request.tracks = tracks;
+  request.margin = 0.35;
+  const verify::Plan plan = planner.plan(request, {}, 1, 0, {40}, pool);
+  ASSERT_TRUE(plan.verification.free());
+  double least = base::kInfinity;
+  for (double t = 0.0; t <= 6.0; t += 0.01) {
+    const Vec3 obstacle = sweeper.position + t * sweeper.velocity;
+    least = std::min(least, (base::sample(plan.path, t).position - obstacle).norm() - 0.6 - request.vehicle.radius);
+  }
+  EXPECT_GT(least, 0.0);
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,591 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/path_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "planner/base/random.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+PathRequest request(const Vec3& target = {40, 0, 2}) {
+  PathRequest r;
+  r.position = {0, 0, 2};
+  r.target = target;
+  return r;
+}
+
+base::Track sphere(const Vec3& position, const Vec3& velocity, double radius = 0.5) {
+  base::Track track;
+  track.position = position;
+  track.velocity = velocity;
+  track.radius = radius;
+  return track;
+}
+
+Vec3 random_vector(base::RandomStream& random, double range) {
+  const double x = random.uniform(-range, range);
+  const double y = random.uniform(-range, range);
+  return {x, y, random.uniform(-range, range)};
+}
+
+std::vector<double> random_variables(base::RandomStream& random, const PathProblem& problem, double range = 1.0) {
+  std::vector<double> x(static_cast<std::size_t>(problem.dimension()));
+  for (double& value : x) value = random.uniform(-range, range);
+  return x;
+}
+
+std::vector<double> zeros(const PathProblem& problem) {
+  return std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0);
+}
+
+optimizer::Cost evaluate(const PathProblem& problem, std::span<const double> x) {
+  optimizer::Cost cost;
+  problem.evaluate(x, {&cost, 1});
+  return cost;
+}
+
+TEST(PathProblem, HasThreeVariablesForEachWaypoint) {
+  const PathProblem problem{base::HorizonSettings{}};
+  EXPECT_EQ(problem.dimension(), 18);
+  EXPECT_EQ(problem.objectives(), 3);
+  EXPECT_EQ(problem.steps(), 60);
+  EXPECT_DOUBLE_EQ(problem.horizon(), 6.0);
+  for (const double v : problem.lower()) EXPECT_EQ(v, -1.0);
+  for (const double v : problem.upper()) EXPECT_EQ(v, 1.0);
+}
+
+/// How far a motion strays from steady straight flight to its target.
+struct Straightness {
+  double aside = 0.0;      ///< largest distance from the line, m
+  double backward = 0.0;   ///< most that it ever falls back, m
+  double overshoot = 0.0;  ///< beyond the target, m
+  double fastest = 0.0;
+  double off_cruise = 0.0;  ///< largest difference from cruise speed after 2 s and 4 m before the target, m/s
+};
+
+Straightness straightness(const base::TimedPath& path, const geometry::PathFrame& frame, double cruise) {
+  Straightness s;
+  double furthest = 0.0;
+  for (const base::TimedPoint& point : path) {
+    const Vec3 q = frame.from_enu(point.position);
+    s.aside = std::max(s.aside, std::hypot(q.y(), q.z()));
+    s.backward = std::max(s.backward, furthest - q.x());
+    s.overshoot = std::max(s.overshoot, q.x() - frame.length);
+    s.fastest = std::max(s.fastest, point.velocity.norm());
+    furthest = std::max(furthest, q.x());
+    if (point.t > 2.0 && frame.length - q.x() > 4.0) {
+      s.off_cruise = std::max(s.off_cruise, std::abs(point.velocity.norm() - cruise));
+    }
+  }
+  return s;
+}
+
+/// The motion of zero variables from rest, and from it the cruise speed: slower where it climbs steeply.
+Straightness undisturbed(const Vec3& target, double& cruise, base::TimedPath& path) {
+  PathProblem problem{base::HorizonSettings{}};
+  const PathRequest r = request(target);
+  problem.prepare(r);
+  path = problem.motion(zeros(problem));
+  const geometry::PathFrame frame(r.position, target);
+  cruise = std::min(3.0, 2.0 / std::max(1e-9, std::abs(frame.axis.z())));
+  return straightness(path, frame, cruise);
+}
+
+const std::vector<Vec3> kTargets{{20, 0, 2}, {-12, 9, 2}, {0, 0, 12}, {12, 0, 11}};
+
+// The follower has a lag: it is up to 12 % fast for a moment, and up to 10 cm beyond a target that lies within the
+// horizon.
+TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
+  for (const Vec3& target : kTargets) {
+    double cruise = 0.0;
+    base::TimedPath path;
+    const Straightness s = undisturbed(target, cruise, path);
+    EXPECT_LT(s.aside, 1e-9);
+    EXPECT_LT(s.off_cruise, 0.05);
+    EXPECT_LT(s.fastest, 1.13 * cruise);
+    EXPECT_LT(s.overshoot, 0.1);
+    EXPECT_EQ(path.back().position, target);
+    EXPECT_EQ(path.back().velocity, Vec3(0, 0, 0));
+    EXPECT_NEAR(base::path_length(path), (target - Vec3(0, 0, 2)).norm(), 0.2);
+  }
+}
+
+// "With all of them 0 it is undisturbed flight": straight on, at cruise speed, braking for the target, without the
+// follower's overshoot.
+TEST(PathProblem, ZeroVariablesDoNotOvershootSpeedOrTarget) {
+  for (const Vec3& target : kTargets) {
+    double cruise = 0.0;
+    base::TimedPath path;
+    const Straightness s = undisturbed(target, cruise, path);
+    EXPECT_LE(s.fastest, cruise + 1e-6);
+    EXPECT_LE(s.overshoot, 1e-6);
+    EXPECT_LE(s.backward, 1e-6);
+  }
+}
+
+TEST(PathProblem, ZeroVariablesAreTheCheapestWithoutObstacles) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  const optimizer::Cost straight = evaluate(problem, zeros(problem));
+  EXPECT_NEAR(straight.f[0], 40.0, 0.01);  // its length, and at most a few milliseconds lost
+  EXPECT_NEAR(straight.f[1], 0.0, 1e-6);
+  EXPECT_EQ(straight.f[2], 0.0);
+  EXPECT_EQ(straight.violation, 0.0);
+  base::RandomStream random(1);
+  for (int i = 0; i < 200; ++i) EXPECT_GT(evaluate(problem, random_variables(random, problem)).f[0], straight.f[0]);
+}
+
+TEST(PathProblem, StartsInTheRequestsState) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  r.velocity = {1, -1, 0.5};
+  problem.prepare(r);
+  base::RandomStream random(2);
+  const base::TimedPath path = problem.motion(random_variables(random, problem));
+  EXPECT_EQ(path.front().t, 0.0);
+  EXPECT_EQ(path.front().position, r.position);
+  EXPECT_EQ(path.front().velocity, r.velocity);
+}
+
+// The limits are those of VehicleLimits, the acceleration acceleration_share of it or of acceleration_limit, whichever
+// is less. The last step, in which a path
+// within 5 cm of the target is put on it, is not counted.
+TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
+  const base::HorizonSettings settings;
+  PathProblem problem{settings};
+  base::RandomStream random(3);
+  for (int round = 0; round < 300; ++round) {
+    PathRequest r = request(Vec3(0, 0, 2) + random_vector(random, round % 2 == 0 ? 30.0 : 5.0));
+    r.velocity = 0.3 * random_vector(random, 5.0);
+    if (round % 3 == 0) r.vehicle.max_acceleration = 3.0 * settings.acceleration_limit;
+    problem.prepare(r);
+    const base::TimedPath path = problem.motion(random_variables(random, problem));
+    ASSERT_GE(path.size(), 2U);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      ASSERT_NEAR(path[i].t - path[i - 1].t, settings.step, 1e-9);
+      const Vec3 moved = (path[i].position - path[i - 1].position) / settings.step;
+      ASSERT_LE(moved.norm(), r.vehicle.max_speed + 1e-9);
+      ASSERT_LE(std::abs(moved.z()), r.vehicle.max_climb + 1e-9);
+      if (i + 1 == path.size()) continue;
+      ASSERT_LE(path[i].velocity.norm(), r.vehicle.max_speed + 1e-9);
+      ASSERT_LE(std::abs(path[i].velocity.z()), r.vehicle.max_climb + 1e-9);
+      const Vec3 change = (path[i].velocity - path[i - 1].velocity) / settings.step;
+      const double most = std::min(r.vehicle.max_acceleration, settings.acceleration_limit);
+      ASSERT_LE(change.norm(), settings.acceleration_share * most + 1e-9);
+      ASSERT_LT((change - path[i - 1].acceleration).norm(), 1e-6);
+      ASSERT_LT((moved - 0.5 * (path[i].velocity + path[i - 1].velocity)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(PathProblem, MotionEndsAtTheTargetAndAtRest) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(4);
+  for (int round = 0; round < 100; ++round) {
+    PathRequest r = request(Vec3(0, 0, 2) + random_vector(random, 40.0));
+    problem.prepare(r);
+    const base::TimedPath path = problem.motion(random_variables(random, problem));
+    ASSERT_EQ(path.back().position, r.target);
+    ASSERT_EQ(path.back().velocity, Vec3(0, 0, 0));
+    if (path.size() > 1) {  // it ends where it arrived, and does not wait there
+      ASSERT_GT((path[path.size() - 2].position - r.target).norm(), 0.0);
+    }
+  }
+}
+
+TEST(PathProblem, WorksWhereStartAndTargetCoincide) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request({0, 0, 2});
+  problem.prepare(r);
+  const base::TimedPath path = problem.motion(zeros(problem));
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(path.back().position, r.target);
+  const optimizer::Cost cost = evaluate(problem, zeros(problem));
+  EXPECT_TRUE(std::isfinite(cost.f[0] + cost.f[1] + cost.f[2] + cost.violation));
+}
+
+TEST(PathProblem, WaypointsStayInTheVolumeAndLeavingItIsAViolation) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(5);
+  PathRequest r = request();
+  r.volume = {{-1, -1, 1}, {45, 1, 3}};
+  problem.prepare(r);
+  for (int round = 0; round < 100; ++round) {
+    const std::vector<double> x = random_variables(random, problem);
+    double outside = 0.0;  // m·s
+    for (const base::TimedPoint& point : problem.motion(x)) {
+      if (point.t > problem.horizon() + 1e-9 || point.t == 0.0) continue;
+      const Vec3 inside = point.position.cwiseMax(r.volume.min).cwiseMin(r.volume.max);
+      outside += 0.1 * (point.position - inside).norm();
+    }
+    const optimizer::Cost cost = evaluate(problem, x);
+    ASSERT_NEAR(cost.violation, outside, 1e-9);
+    ASSERT_LT(cost.violation, 4.0);  // overshoot alone, though variables of ±1 ask for 6 m to the side
+  }
+}
+
+/// f3 and violation by their definition, from every track, nothing left out.
+optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSettings& s, const PathRequest& r,
+                               const base::TimedPath& path) {
+  optimizer::Cost cost;
+  for (int n = 0; n < problem.steps(); ++n) {
+    const double t = n * s.step;
+    const double weight = s.step / (0.5 + t);
+    const Vec3 from = base::sample(path, t).position;
+    const Vec3 to = base::sample(path, (n + 1) * s.step).position;
+    for (const base::Track& track : r.tracks) {
+      const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
+      const Vec3 d = geometry::predict_position(track, (n + 1) * s.step, r.acceleration_trust);
+      const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d));
+      const double ahead = (n + 1) * s.step + track.age;
+      const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
+      const double extra =
+          std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
+      const double hard = track.radius + r.vehicle.radius + r.margin;
+      cost.violation += weight * std::max(0.0, hard - distance);
+      if (extra > 0.0) {
+        const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+        cost.f[2] += weight * depth * depth;
+      }
+    }
+  }
+  return cost;
+}
+
+std::vector<base::Track> random_tracks(base::RandomStream& random) {
+  std::vector<base::Track> tracks;
+  for (std::uint64_t id = 0; id < 110; ++id) {  // several chunks of the inner loop
+    base::Track track = sphere(random_vector(random, 25.0), random_vector(random, 4.0), random.uniform(0.2, 1.0));
+    track.acceleration = random_vector(random, 2.0);
+    track.position_sigma = random.uniform(0.0, 0.1);
+    track.velocity_sigma = random.uniform(0.0, 0.1);
+    track.age = random.uniform(0.0, 0.3);
+    tracks.push_back(track);
+  }
+  return tracks;
+}
+
+// Also proves that no obstacle that can be met is left out.
+TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
+  const base::HorizonSettings settings;
+  PathProblem problem{settings};
+  base::RandomStream random(6);
+  int violated = 0;
+  std::size_t kept = 0;
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<base::Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.velocity = random_vector(random, 2.0);
+    r.tracks = tracks;
+    r.margin = 0.35;
+    r.track_acceleration = 0.4;
+    r.acceleration_trust = round % 2 == 0 ? 0.7 : base::kInfinity;
+    problem.prepare(r);
+    kept += problem.obstacles();
+    for (int i = 0; i < 10; ++i) {
+      const std::vector<double> x = random_variables(random, problem);
+      const optimizer::Cost cost = evaluate(problem, x);
+      const optimizer::Cost expected = reference_cost(problem, settings, r, problem.motion(x));
+      ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9);
+      ASSERT_NEAR(cost.violation, expected.violation, 1e-9);
+      violated += cost.violation > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(violated, 50);
+  EXPECT_LT(violated, 590);
+  EXPECT_GT(kept, 60U * 33U);
+  EXPECT_LT(kept, 60U * 110U);
+}
+
+/// Requests that strain the bounds of where the vehicle can be: fast away from the target, beyond the limits of speed
+/// and climb, in a narrow volume, on a short way, with other limits.
+PathRequest strained(base::RandomStream& random, int round) {
+  PathRequest r = request(round % 5 == 0 ? Vec3(3, 1, 2) : Vec3(40, 0, 2));
+  r.velocity = random_vector(random, round % 3 == 0 ? 12.0 : 3.0);
+  if (round % 4 == 0) r.volume = {{-2, -1, 1}, {45, 1, 3}};
+  if (round % 7 == 0) r.vehicle.max_acceleration = 1.0;
+  if (round % 11 == 0) r.vehicle.max_speed = 15.0;
+  r.margin = 0.35;
+  r.track_acceleration = 0.4;
+  r.acceleration_trust = round % 2 == 0 ? 0.7 : base::kInfinity;
+  return r;
+}
+
+TEST(PathProblem, LeavesOutNoObstacleThatAnyMotionMeets) {
+  const base::HorizonSettings settings;
+  PathProblem problem{settings};
+  base::RandomStream random(61);
+  int met = 0;
+  for (int round = 0; round < 150; ++round) {
+    std::vector<base::Track> tracks = random_tracks(random);
+    for (base::Track& track : tracks) {  // half of them far, of which many come near
+      if (random.below(2) == 0) continue;
+      track.position *= random.uniform(2.0, 6.0);
+      track.velocity = -track.position / random.uniform(1.0, 6.0) + random_vector(random, 4.0);
+      track.acceleration *= random.uniform(0.0, 4.0);
+    }
+    PathRequest r = strained(random, round);
+    r.tracks = tracks;
+    problem.prepare(r);
+    for (int i = 0; i < 8; ++i) {
+      const std::vector<double> x = random_variables(random, problem, i < 2 ? 0.1 : 1.0);
+      const base::TimedPath path = problem.motion(x);
+      const optimizer::Cost cost = evaluate(problem, x);
+      const optimizer::Cost expected = reference_cost(problem, settings, r, path);
+      double outside = 0.0;
+      for (int n = 1; n <= problem.steps(); ++n) {
+        const Vec3 p = base::sample(path, n * settings.step).position;
+        outside += settings.step * (p - p.cwiseMax(r.volume.min).cwiseMin(r.volume.max)).norm();
+      }
+      const double scale = 1.0 + expected.violation + outside;
+      ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9 * scale) << round;
+      if (path.back().t < problem.horizon()) continue;  // put on the target at the end, which evaluation leaves out
+      ASSERT_NEAR(cost.violation, expected.violation + outside, 1e-9 * scale) << round;
+      met += expected.violation > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(met, 200);
+}
+
+// The plan flown until now may be where no new solution can be.
+TEST(PathProblem, CostOfCountsObstaclesWhereNoSolutionCanBe) {
+  const base::HorizonSettings settings;
+  PathProblem problem{settings};
+  base::RandomStream random(62);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<base::Track> tracks = random_tracks(random);
+    PathRequest r = strained(random, 1);
+    r.tracks = tracks;
+    problem.prepare(r);
+    base::TimedPath path;
+    for (int i = 0; i < 8; ++i) path.push_back({0.9 * i, random_vector(random, 20.0), Vec3::Zero(), Vec3::Zero()});
+    const optimizer::Cost cost = problem.cost_of(path);
+    const optimizer::Cost expected = reference_cost(problem, settings, r, path);
+    ASSERT_NEAR(cost.f[2], expected.f[2], 1e-9);
+    ASSERT_NEAR(cost.violation, expected.violation, 1e-9);
+  }
+}
+
+// What is measured is what is flown, to the bit.
+TEST(PathProblem, MeasuresTheMotionItself) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(63);
+  for (int round = 0; round < 50; ++round) {
+    const std::vector<base::Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.velocity = random_vector(random, 2.0);
+    r.tracks = tracks;
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem);
+    base::TimedPath path = problem.motion(x);
+    ASSERT_GT(path.back().t, problem.horizon());
+    for (std::size_t n = 0; n < path.size(); ++n) path[n].t = static_cast<double>(n) * 0.1;  // sampled at its points
+    EXPECT_EQ(problem.cost_of(path).f, evaluate(problem, x).f);
+    EXPECT_EQ(problem.cost_of(path).violation, evaluate(problem, x).violation);
+  }
+}
+
+// 0.1 s steps at 200 m/s: 20 m between two instants, across the path.
+TEST(PathProblem, DoesNotLoseAnObstacleThatIsFarAwayAtEveryInstant) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  const std::vector<base::Track> tracks{sphere({1.5, -210, 2}, {0, 200, 0})};
+  r.tracks = tracks;
+  problem.prepare(r);
+  EXPECT_EQ(problem.obstacles(), 1U);
+  EXPECT_GT(evaluate(problem, zeros(problem)).violation, 0.0);
+}
+
+TEST(PathProblem, UnreachableObstaclesAreLeftOutAndChangeNothing) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(7);
+  PathRequest r = request();
+  const std::vector<base::Track> near{sphere({6, 0.3, 2}, {-1, 0, 0})};
+  std::vector<base::Track> all = near;
+  all.push_back(sphere({100, 0, 2}, {0, 0, 0}));
+  all.push_back(sphere({20, 40, 2}, {0, 3, 0}));
+  const std::vector<double> x = random_variables(random, problem, 0.2);
+  r.tracks = near;
+  problem.prepare(r);
+  const optimizer::Cost without = evaluate(problem, x);
+  r.tracks = all;
+  problem.prepare(r);
+  EXPECT_EQ(problem.obstacles(), 1U);
+  const optimizer::Cost with = evaluate(problem, x);
+  EXPECT_EQ(with.f, without.f);
+  EXPECT_EQ(with.violation, without.violation);
+}
+
+// One second late: 0.5 · 3 m/s · 1 s = 1.5 m in the length objective.
+TEST(PathProblem, LostTimeCountsAsLength) {
+  base::HorizonSettings settings;
+  settings.deviation_weight = 0.0;
+  PathProblem problem{settings};
+  PathRequest r = request({9, 0, 2});
+  problem.prepare(r);
+  const base::TimedPath straight = problem.motion(zeros(problem));
+  base::TimedPath late = straight;
+  for (base::TimedPoint& point : late) point.t += 1.0;
+  EXPECT_NEAR(problem.cost_of(straight).f[0], 9.0, 0.2);
+  EXPECT_NEAR(problem.cost_of(late).f[0] - problem.cost_of(straight).f[0], 0.5 * 3.0 * 1.0, 0.16);
+}
+
+// The way over the place instead of straight on counts in full, and as lost time, four times as much of it.
+TEST(PathProblem, TheWayOnLeadsOverAPlaceThatIsGiven) {
+  base::HorizonSettings settings;
+  PathProblem problem{settings};
+  const PathRequest r = request({40, 0, 2});
+  problem.prepare(r);
+  const std::vector<double> straight = zeros(problem);
+  const double before = evaluate(problem, straight).f[0];
+  const base::TimedPoint end = base::sample(problem.motion(straight), problem.horizon());
+  const double braking = settings.planned_acceleration(r.vehicle.max_acceleration);
+  const Vec3 stop = end.position + Vec3(end.velocity.squaredNorm() / (2.0 * braking), 0, 0);
+  const Vec3 via(30, 6, 5);
+  const double detour = (via - stop).norm() + (r.target - via).norm() - (r.target - stop).norm();
+  ASSERT_GT(detour, 1.0);
+  problem.prepare(r, via);
+  EXPECT_NEAR(evaluate(problem, straight).f[0] - before, (1.0 + 4.0 * settings.time_weight) * detour, 0.1);
+  problem.prepare(r, Vec3(5, 6, 5));  // passed by then
+  EXPECT_NEAR(evaluate(problem, straight).f[0], before, 0.05);
+  problem.prepare(r);
+  EXPECT_EQ(evaluate(problem, straight).f[0], before);
+}
+
+// Right angle to the left, then straight on to the target behind it: π/2, and the way back to the line.
+TEST(PathProblem, SteeringIsTheSumOfTheAnglesBetweenLegs) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request({6, 6, 2});
+  r.velocity = {1, 0, 0};
+  problem.prepare(r);
+  // At 2 m/s east for 3 s, then north for 3 s: corners at waypoint 3 (t = 3 s) alone.
+  const base::TimedPath path{{0, {0, 0, 2}, Vec3::Zero(), Vec3::Zero()},
+                             {3, {6, 0, 2}, Vec3::Zero(), Vec3::Zero()},
+                             {6, {6, 6, 2}, Vec3::Zero(), Vec3::Zero()}};
+  EXPECT_NEAR(problem.cost_of(path).f[1], std::numbers::pi / 2, 1e-9);
+}
+
+TEST(PathProblem, CostOfAMotionIsItsEvaluation) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(8);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<base::Track> tracks = random_tracks(random);
+    PathRequest r = request();
+    r.tracks = tracks;
+    r.margin = 0.35;
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem, 0.5);
+    const optimizer::Cost a = evaluate(problem, x);
+    const optimizer::Cost b = problem.cost_of(problem.motion(x));
+    EXPECT_NEAR(a.f[0], b.f[0], 1e-9);
+    EXPECT_NEAR(a.f[1], b.f[1], 1e-9);
+    EXPECT_NEAR(a.f[2], b.f[2], 1e-9);
+    EXPECT_NEAR(a.violation, b.violation, 1e-9);
+  }
+}
+
+// To the bit, whatever the lane, the block and what else is in it; and it is the motion that is measured.
+TEST(PathProblem, EvaluatesSeveralSolutionsLikeOne) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(9);
+  const std::vector<base::Track> tracks = random_tracks(random);
+  PathRequest r = request();
+  r.tracks = tracks;
+  r.margin = 0.35;
+  r.volume = {{-1, -4, 0.5}, {50, 4, 6}};
+  r.velocity = {2, 1, 0};
+  problem.prepare(r);
+  for (const std::size_t count : {1U, 3U, 4U, 5U, 8U, 9U, 12U, 13U, 17U, 25U, 48U}) {
+    std::vector<double> all;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::vector<double> x = random_variables(random, problem, i % 2 == 0 ? 1.0 : 0.2);
+      all.insert(all.end(), x.begin(), x.end());
+    }
+    std::vector<optimizer::Cost> costs(count);
+    problem.evaluate(all, costs);
+    for (std::size_t i = 0; i < count; ++i) {
+      const optimizer::Cost alone = evaluate(problem, std::span(all).subspan(18 * i, 18));
+      EXPECT_EQ(costs[i].f, alone.f);
+      EXPECT_EQ(costs[i].violation, alone.violation);
+    }
+  }
+}
+
+// Waypoints lie on the path, but the vehicle follows them with a lag, so the motion is not the same again: on average
+// it stays within the lag of half a second at the speed of the drift.
+TEST(PathProblem, ImitatedMotionStaysClose) {
+  PathProblem problem{base::HorizonSettings{}};
+  base::RandomStream random(10);
+  double worst = 0.0;
+  double sum = 0.0;
+  int count = 0;
+  for (int round = 0; round < 100; ++round) {
+    PathRequest r = request();
+    r.velocity = {3, 0, 0};
+    problem.prepare(r);
+    const std::vector<double> x = random_variables(random, problem, 0.15);
+    const base::TimedPath path = problem.motion(x);
+    std::vector<double> y(x.size());
+    problem.imitate(path, y);
+    const base::TimedPath again = problem.motion(y);
+    for (int n = 0; n <= problem.steps(); ++n, ++count) {
+      const double off = (base::sample(path, 0.1 * n).position - base::sample(again, 0.1 * n).position).norm();
+      worst = std::max(worst, off);
+      sum += off;
+    }
+  }
+  EXPECT_LT(sum / count, 0.45);
+  EXPECT_LT(worst, 2.2);
+}
+
+// The first waypoint after 1 s: 2 m to the left and 1 m up of the straight line, of min(6, 5·1) = 5 m that ±1 reaches.
+TEST(PathProblem, ImitationIsTheOffsetOverTheReach) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  std::vector<double> x = zeros(problem);
+  problem.imitate({{0, {0, 2, 3}, Vec3::Zero(), Vec3::Zero()}}, x);
+  EXPECT_NEAR(x[1], 2.0 / 5.0, 1e-12);
+  EXPECT_NEAR(x[2], 1.0 / 5.0, 1e-12);
+  EXPECT_NEAR(x[4], 2.0 / 6.0, 1e-12);
+  EXPECT_LT(x[0], 0.0);  // it stays behind undisturbed flight
+  for (const double value : x) EXPECT_LE(std::abs(value), 1.0);
+}
+
+// 3 m to the left for two thirds of the horizon. The waypoints reach 5 m and then 6 m aside.
+TEST(PathProblem, GoesAsideAndReturns) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  problem.prepare(r);
+  std::vector<double> x = zeros(problem);
+  for (std::size_t k = 0; k < 4; ++k) x[3 * k + 1] = 3.0 / (k == 0 ? 5.0 : 6.0);
+  double leftmost = 0.0;
+  for (const base::TimedPoint& point : problem.motion(x)) leftmost = std::max(leftmost, point.position.y());
+  EXPECT_GT(leftmost, 2.9);
+  EXPECT_LT(leftmost, 3.9);  // the follower overshoots by a quarter
+  EXPECT_EQ(x[15], 0.0);
+  EXPECT_EQ(x[16], 0.0);
+}
+
+}  // namespace
+
+TEST(PathProblem, RefusesMoreStepsThanItHasRoomFor) {
+  base::HorizonSettings settings;
+  settings.time = 30.0;
+  settings.step = 0.1;
+  EXPECT_THROW(PathProblem{settings}, std::invalid_argument);
+  settings.step = 0.0;
+  EXPECT_THROW(PathProblem{settings}, std::invalid_argument);
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulator's DDS side against the bridge's, over real transports, in simulated time.
+#include "sim/dds/vehicle_topics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "Px4.h"
+#include "bridge/dds/payload_io.hpp"
+#include "bridge/dds/px4_link.hpp"
+#include "tests/bridge/dds/dds_testing.hpp"
+#include "tests/support/child_process.hpp"
+
+namespace {
+
+using jink::Vec3;
+using jink::bridge::dds::DdsNode;
+using jink::bridge::dds::DdsVehicleLink;
+using jink::bridge::dds::Payload;
+using jink::bridge::dds::PayloadWriter;
+using jink::bridge::testing::eventually;
+using jink::bridge::testing::ManualClock;
+using jink::bridge::testing::own_domain;
+using jink::bridge::vehicle::Setpoint;
+using jink::bridge::vehicle::VehicleState;
+using jink::sim::dds::SimDds;
+using jink::sim::vehicle::Autopilot;
+
+TEST(JumpWatch, TellsAJumpFromMotion) {
+  jink::sim::dds::JumpWatch watch;
+  jink::sim::vehicle::Motion motion;
+  motion.velocity = {2.0, 0.0, 0.0};
+  EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
+  motion.position = {0.2, 0.0, 0.0};
+  EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
+  motion.position = {3.4, 0.0, -1.0};  // 0.2 m flown, 3 m jumped
+  const jink::sim::dds::EstimateJumps jumps = watch.update(0, motion, 0.1);
+  EXPECT_EQ(jumps.horizontal, 0);
+  EXPECT_EQ(jumps.vertical, 0);
+  EXPECT_LT((jumps.newest - Vec3(3.0, 0.0, -1.0)).norm(), 1e-12);
+  motion.position.x() += 0.2;
+  EXPECT_EQ(watch.update(0, motion, 0.1).newest, jumps.newest);
+}
+
+class NoLink final : public jink::bridge::vehicle::VehicleLink {
+ public:
+  VehicleState state() override { return {}; }
+  bool send(const Setpoint& /*setpoint*/) override { return false; }
+  void request(jink::bridge::vehicle::Command /*command*/) override {}
+  std::optional<jink::bridge::vehicle::CommandReport> next_report() override { return std::nullopt; }
+};
+
+jink::sim::vehicle::AutopilotOptions airborne() {
+  jink::sim::vehicle::AutopilotOptions options;
+  options.position = {1.0, 2.0, 3.0};
+  options.airborne = true;
+  options.ready_delay = 0.0;
+  return options;
+}
+
+class SimulatedDds : public ::testing::Test {
+ protected:
+  // One step of the simulator: 4 ms.
+  void step(const jink::sim::dds::EstimateJumps& jumps = {}) {
+    dds_.step(autopilot_.time(), autopilot_, jumps);
+    autopilot_.step();
+  }
+  // Steps until `condition`; real time passes for the transports.
+  bool step_until(const std::function<bool()>& condition) {
+    return eventually([&] {
+      step();
+      return condition();
+    });
+  }
+
+  const int domain_ = own_domain();
+  ManualClock clock_;
+  NoLink under_;
+  DdsNode vehicle_{domain_, "simulated autopilot"};
+  DdsNode companion_{domain_};
+  Autopilot autopilot_{airborne()};
+  SimDds dds_{vehicle_, "px4_3"};
+};
+
+TEST_F(SimulatedDds, FliesOnDdsAlone) {
+  DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = true, .name_space = "px4_3"});
+  ASSERT_TRUE(step_until([&] { return link.state().local_position_ok; }));
+  const VehicleState s = link.state();
+  EXPECT_LT((s.position - Vec3(1, 2, 3)).norm(), 0.01);
+  EXPECT_NEAR(s.yaw, airborne().yaw, 1e-3);
+  EXPECT_TRUE(s.origin);
+  EXPECT_EQ(s.estimate_resets, 0U);
+  const Setpoint setpoint{.position = {2, 2, 3}, .yaw = airborne().yaw};
+  ASSERT_TRUE(step_until([&] { return link.send(setpoint) && dds_.setpoints() > 0; }));
+  ASSERT_EQ(autopilot_.set_mode(6), jink::sim::vehicle::Result::kAccepted);
+  EXPECT_TRUE(step_until([&] { return link.send(setpoint) && (link.state().position - Vec3(2, 2, 3)).norm() < 0.1; }))
+      << link.state().position.transpose();
+  EXPECT_EQ(dds_.malformed(), 0U);
+}
+
+TEST_F(SimulatedDds, TellsOfJumps) {
+  DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = false, .name_space = "px4_3"});
+  ASSERT_TRUE(step_until([&] { return link.state().local_position_ok; }));
+  const jink::sim::dds::EstimateJumps jumps{.horizontal = 1, .vertical = 0, .newest = {3.0, -1.0, 0.0}};
+  ASSERT_TRUE(eventually([&] { return step(jumps), link.state().estimate_resets == 1; }));
+  EXPECT_EQ(link.state().estimate_shift, Vec3(3.0, -1.0, 0.0));
+}
+
+TEST_F(SimulatedDds, TakesNoSetpointWithoutAControlMode) {
+  PayloadWriter setpoints(companion_, "rt/px4_3/fmu/in/trajectory_setpoint",
+                          jink::bridge::dds::kTrajectorySetpointType);
+  PayloadWriter modes(companion_, "rt/px4_3/fmu/in/offboard_control_mode", jink::bridge::dds::kOffboardControlModeType);
+  ASSERT_TRUE(step_until([&] { return setpoints.readers() == 1 && modes.readers() == 1; }));
+  ASSERT_TRUE(setpoints.write(Payload{0, 1, 0, 0, 5}));
+  ASSERT_TRUE(step_until([&] { return dds_.malformed() == 1; }));  // so the next ones come too
+  ASSERT_TRUE(setpoints.write_message(px4_msgs::msg::dds_::TrajectorySetpoint_()));
+  ASSERT_TRUE(setpoints.write(Payload{0, 1, 0, 0, 5}));
+  ASSERT_TRUE(step_until([&] { return dds_.malformed() == 2; }));
+  EXPECT_EQ(dds_.setpoints(), 0U);
+  EXPECT_FALSE(autopilot_.stream_live());
+  px4_msgs::msg::dds_::OffboardControlMode_ mode;
+  mode.position(true);
+  ASSERT_TRUE(modes.write_message(mode));
+  EXPECT_TRUE(step_until([&] { return dds_.setpoints() == 1; }));
+  EXPECT_TRUE(autopilot_.stream_live());
+}
+
+}  // namespace

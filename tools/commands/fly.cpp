@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// jink fly: the bridge on a companion computer.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "bridge/base/clock.hpp"
+#include "bridge/companion/companion.hpp"
+#include "bridge/dds/autoware.hpp"
+#include "bridge/dds/intents.hpp"
+#include "bridge/dds/px4_link.hpp"
+#include "bridge/dds/tracks.hpp"
+#include "bridge/mavlink/adsb_tracks.hpp"
+#include "bridge/mavsdk/link.hpp"
+#include "bridge/tracking/track_sources.hpp"
+#include "config/mission.hpp"
+#include "tools/cli/command_line.hpp"
+#include "tools/cli/progress_line.hpp"
+#include "tools/cli/summaries.hpp"
+#include "tools/log/flight_log.hpp"
+#include "tools/report/html_report.hpp"
+
+namespace jink::tools::commands {
+namespace {
+
+struct FlyOptions {
+  cli::CommonOptions common;
+  std::string mission;
+  std::string log;
+  std::string report;
+};
+
+/// Events as lines.
+class Teller final : public bridge::companion::FlightObserver {
+ public:
+  explicit Teller(cli::BackgroundPrinter& printer) : printer_(printer) {}
+
+  void on_event(double t, std::string_view name, const std::string& detail) override {
+    printer_.line(fmt::format("[{:6.1f} s] {}{}{}", t, name, detail.empty() ? "" : ": ", detail));
+  }
+
+ private:
+  cli::BackgroundPrinter& printer_;
+};
+
+nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
+                                      const config::Settings& settings) {
+  const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
+  return {
+      {"mission", mission.name},
+      {"seed", options.common.seed},
+      {"target", log::vector_json(mission.waypoints.back())},
+      {"vehicle",
+       {{"name", mission.vehicle_name}, {"radius", mission.vehicle.radius}, {"max_speed", mission.vehicle.max_speed}}},
+      {"world", bounded ? nlohmann::ordered_json{{"min", log::vector_json(mission.geofence.min)},
+                                                 {"max", log::vector_json(mission.geofence.max)}}
+                        : nullptr},
+      {"parameters", log::parameters_of(settings)}};
+}
+
+/// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
+/// Ctrl-C brakes and hands over to HOLD.
+void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLink& link,
+              const bridge::base::Clock& clock, double rate_hz, bridge::base::Wake& wake,
+              const std::vector<bridge::companion::FlightObserver*>& observers) {
+  constexpr double kFailing_s = 10.0;  // of turns that throw, after which HOLD has been asked for often enough
+  const auto period =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
+  auto next = std::chrono::steady_clock::now() + period;
+  double last_good = clock.now();
+  while (true) {
+    const double begun = clock.now();
+    bool failed = false;
+    try {
+      if (!companion.step(begun)) return;
+      last_good = begun;
+    } catch (const std::exception& failure) {
+      failed = true;
+      companion.end(begun, bridge::supervisor::Outcome::kAborted, std::string("jink failed: ") + failure.what());
+      link.request(bridge::vehicle::Command::kHold);
+    }
+    if (failed && begun - last_good > kFailing_s) return;
+    if (cli::interrupted()) companion.interrupt(clock.now());
+    while (const auto notice = link.next_notice()) {
+      for (bridge::companion::FlightObserver* observer : observers)
+        observer->on_event(clock.now(), notice->name, notice->detail);
+    }
+    wake.wait_until(failed ? std::max(next, std::chrono::steady_clock::now() + std::chrono::milliseconds(500)) : next);
+    // A turn that came late is not made up for: setpoints in a burst say nothing.
+    const auto now = std::chrono::steady_clock::now();
+    if (next <= now) next = std::max(next + period, now);
+  }
+}
+
+/// All that a mission's flight talks to but the autopilot's MAVLink.
+struct Transports {
+  Transports(const config::Mission& mission, bridge::mavsdk::MavsdkLink& mavlink, const bridge::base::Clock& clock)
+      : node(mission.dds_domain), vehicle(&mavlink) {
+    const config::TrackSources& sources = mission.tracks.sources;
+    if (sources.jink) tracks.add(jink.emplace(node, clock));
+    if (sources.autoware) tracks.add(autoware.emplace(node, clock));
+    if (sources.adsb) {
+      const auto reports = [&mavlink](bridge::mavlink::AdsbReport& report) { return mavlink.next_adsb(report); };
+      const auto origin = [&mavlink] { return mavlink.state().origin; };
+      tracks.add(adsb.emplace(reports, origin, clock));
+    }
+    const bool state = mission.state == config::Transport::kDds;
+    const bool setpoints = mission.setpoints == config::Transport::kDds;
+    if (state || setpoints) {
+      const bridge::dds::DdsVehicleOptions options{state, setpoints, mission.dds_namespace};
+      vehicle = &dds_vehicle.emplace(mavlink, node, clock, options);
+    }
+    if (mission.intents) intents.emplace(node, clock);
+  }
+  Transports(const Transports&) = delete;
+  Transports& operator=(const Transports&) = delete;
+
+  bridge::companion::CompanionParts parts(bridge::companion::PlannerTask& planner,
+                                          const std::vector<bridge::companion::FlightObserver*>& observers,
+                                          const bridge::base::Clock& clock) {
+    return {*vehicle, tracks, planner, observers, &clock, intents ? &*intents : nullptr};
+  }
+
+  bridge::dds::DdsNode node;
+  std::optional<bridge::dds::DdsTrackReader> jink;
+  std::optional<bridge::dds::DdsAutowareReader> autoware;
+  std::optional<bridge::mavlink::AdsbTracks> adsb;
+  bridge::tracking::TrackSources tracks;
+  bridge::vehicle::VehicleLink* vehicle;
+  std::optional<bridge::dds::DdsVehicleLink> dds_vehicle;
+  std::optional<bridge::dds::DdsIntents> intents;
+};
+
+int exit_code(const bridge::companion::FlightSummary& flight) {
+  if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) return base::kExitMissingPeer;
+  return flight.outcome == bridge::supervisor::Outcome::kReached ? base::kExitReached : base::kExitFailed;
+}
+
+int run(const FlyOptions& options) {
+  const cli::Printer printer(options.common.json == "-");
+  cli::refuse_same_file({{"MISSION", options.mission}},
+                        {{"--log", options.log}, {"--json", options.common.json}, {"--report", options.report}});
+  if (!options.report.empty() && options.log.empty())
+    throw cli::UsageError("--report: needs --log FILE.jsonl, from which it is made");
+  const config::Settings settings = options.common.settings();
+  const config::Mission mission = config::load_mission(options.mission);
+  cli::catch_signals();
+  const bridge::base::SteadyClock clock;
+  bridge::base::Wake wake;
+  std::optional<cli::BackgroundPrinter> background(printer);
+  Teller teller(*background);
+  cli::LiveFlight live(mission, settings.companion.stale_state, *background);
+  std::vector<bridge::companion::FlightObserver*> observers{&teller, &live};
+  std::unique_ptr<log::FlightLog> log;
+  std::unique_ptr<bridge::mavsdk::MavsdkLink> link;
+  try {
+    link = std::make_unique<bridge::mavsdk::MavsdkLink>(mission.connection, clock);
+  } catch (const std::runtime_error& error) {
+    throw cli::UsageError(options.mission + ": key 'connection': " + error.what());
+  }
+  if (!options.log.empty()) {  // an earlier flight's log outlives a mistyped connection
+    log = std::make_unique<log::FlightLog>(options.log, mission_header(mission, options, settings));
+    observers.push_back(log.get());
+  }
+  const std::jthread discovery([&link](const std::stop_token& stop) {
+    while (!stop.stop_requested() && !link->wait_for_autopilot(1.0, stop)) {
+    }
+  });
+  Transports transports(mission, *link, clock);
+  bridge::companion::ThreadedPlanner planner(
+      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &wake);
+  transports.tracks.notify(wake);
+  bridge::companion::Companion companion(mission, settings, transports.parts(planner, observers, clock));
+  background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
+                               mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
+                               mission.connection, mission.dds_domain, options.common.seed));
+  if (const std::string trouble = bridge::dds::discovery_trouble(mission.dds_domain); !trouble.empty())
+    background->line("warning: " + trouble);
+  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, wake, observers);
+
+  background.reset();
+  const bridge::companion::FlightSummary flight = companion.summary();
+  const auto summary = cli::flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
+  cli::write_json(options.common.json, summary);
+  if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) {
+    std::fprintf(stderr, "jink: %s; %s\n", flight.reason.c_str(),
+                 flight.missing_peer == bridge::supervisor::MissingPeer::kAutopilot
+                     ? "start `jink sim SCENARIO`, PX4 SITL, or check the mission's connection"
+                     : "start `jink sim SCENARIO` or your track writer, or check the mission's dds.domain");
+  } else {
+    printer.line(cli::describe_flight(summary));
+  }
+  if (log) log->close();
+  if (!options.report.empty()) {
+    const nlohmann::json plain = summary;
+    report::write_report(options.log, options.report, &plain);
+    printer.line("report: " + std::filesystem::absolute(options.report).string());
+  }
+  return exit_code(flight);
+}
+
+}  // namespace
+
+cli::Subcommand add_fly(CLI::App& jink) {
+  CLI::App* app = jink.add_subcommand("fly", "fly a mission against the simulator, PX4 SITL or a vehicle");
+  const auto options = std::make_shared<FlyOptions>();
+  app->add_option("MISSION", options->mission, "mission file")->required();
+  app->add_option("--log", options->log, "write a flight log (JSON Lines)")->check(cli::writable_file());
+  app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log")
+      ->check(cli::writable_file());
+  options->common.add_to(*app);
+  app->get_option("--json")->check(cli::writable_file());
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace jink::tools::commands

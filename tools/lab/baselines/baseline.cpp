@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/lab/baselines/baseline.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace jink::tools::lab::baselines {
+namespace {
+
+constexpr double kRounding = 1e-9;  // s, of the companion's clock
+constexpr double kSlope = 0.1;      // s, over which a known path's present velocity is taken
+constexpr double kSameTime = 1e-6;  // s, between contacts that count as simultaneous
+constexpr double kAtTarget = 1e-6;  // m
+
+}  // namespace
+
+void RivalTask::start(bridge::companion::PlanJob job) {
+  assert(!result_);
+  bridge::companion::PlanResult& result = result_.emplace();
+  result.job = std::move(job);
+  result.job.request.tracks = result.job.tracks;
+  result.job.request.paths = result.job.paths;
+  if (is_finite(result.job.request)) result.plan = rival_->plan(result.job);
+  result.ms = 1e3 * latency_;
+}
+
+std::optional<bridge::companion::PlanResult> RivalTask::poll(double now) {
+  if (!result_ || now + kRounding < result_->job.begun + latency_) return std::nullopt;
+  std::optional<bridge::companion::PlanResult> result = std::exchange(result_, std::nullopt);
+  result->missed = now > result->job.start + kRounding;
+  return result;
+}
+
+bool is_finite(const planner::horizon::PathRequest& request) {
+  const auto track_is = [](const planner::base::Track& t) {
+    return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
+           std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
+  };
+  return request.position.allFinite() && request.velocity.allFinite() && request.target.allFinite() &&
+         std::all_of(request.tracks.begin(), request.tracks.end(), track_is) &&
+         std::all_of(request.paths.begin(), request.paths.end(),
+                     [](const planner::geometry::KnownPath& path) { return path.well_formed(); });
+}
+
+std::vector<planner::base::Track> kept_clear(const planner::horizon::PathRequest& request,
+                                             const planner::base::HorizonSettings& settings) {
+  std::vector<planner::base::Track> spheres(request.tracks.begin(), request.tracks.end());
+  for (const planner::geometry::KnownPath& path : request.paths) {
+    planner::base::Track track;
+    track.id = path.id;
+    track.position = path.position(0.0);
+    track.velocity = (path.position(kSlope) - track.position) / kSlope;
+    track.radius = path.radius + path.margin;
+    track.position_sigma = path.position_sigma;
+    track.velocity_sigma = path.velocity_sigma;
+    track.age = path.age;
+    spheres.push_back(track);
+  }
+  for (planner::base::Track& sphere : spheres) {
+    const double sigma = std::hypot(sphere.position_sigma, sphere.velocity_sigma * sphere.age);
+    sphere.radius +=
+        request.vehicle.radius + request.margin + std::min(settings.clearance_limit, settings.sigma_factor * sigma);
+  }
+  return spheres;
+}
+
+planner::verify::Verification check(const planner::base::TimedPath& path, const planner::horizon::PathRequest& request,
+                                    double margin, double until) {
+  planner::base::TimedPath looked_at = path;
+  if (std::isfinite(until) && !path.empty() && path.back().t < until)
+    looked_at.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
+  return planner::verify::verify({looked_at, request.tracks, 0.0, request.vehicle.radius + margin, request.volume,
+                                  request.acceleration_trust, until, request.paths});
+}
+
+planner::verify::Plan judged(planner::base::TimedPath path, const planner::horizon::PathRequest& request,
+                             double horizon) {
+  planner::verify::Plan plan;
+  plan.path = std::move(path);
+  plan.verification = check(plan.path, request, 0.0, horizon);
+  if (!plan.verification.free()) {
+    plan.status = planner::verify::PlanStatus::kBlocked;
+    return plan;
+  }
+  plan.status = planner::verify::PlanStatus::kProgresses;
+  if ((plan.path.back().position - request.target).norm() > kAtTarget) return plan;
+  const planner::verify::Verification whole = check(plan.path, request, 0.0, std::max(horizon, plan.path.back().t));
+  if (!whole.free()) return plan;
+  plan.status = planner::verify::PlanStatus::kReaches;
+  plan.verification = whole;
+  return plan;
+}
+
+bool less_harm(const planner::verify::Verification& a, const planner::verify::Verification& b) {
+  if (a.free() != b.free()) return a.free();
+  if (a.free()) return a.min_clearance > b.min_clearance;
+  if (a.first_contact.has_value() != b.first_contact.has_value()) return !a.first_contact;
+  if (!a.first_contact) return false;
+  if (std::abs(*a.first_contact - *b.first_contact) > kSameTime) return *a.first_contact > *b.first_contact;
+  return a.contact_speed < b.contact_speed;
+}
+
+}  // namespace jink::tools::lab::baselines

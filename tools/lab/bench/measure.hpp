@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all benchmarks share: options, a stopwatch, statistics of samples, aligned tables on stdout.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace jink::tools::lab::bench {
+
+/// How much is measured. `--quick` keeps every table and takes few samples.
+struct Options {
+  bool quick = false;
+  int cores = 1;
+  int seeds = 20;       ///< missions of each kind, with seeds 1 .. seeds
+  int rounds = 5;       ///< of all timed missions with each seed
+  int replans = 10000;  ///< in each moving world
+  int scaling_rounds = 50;
+};
+
+/// Wall time of one call, ms.
+template <typename Work>
+double milliseconds(const Work& work) {
+  const auto begun = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
+}
+
+/// The q-quantile, linear between order statistics. Precondition: not empty.
+double quantile(std::vector<double> samples, double q);
+inline double median(const std::vector<double>& samples) {
+  return quantile(samples, 0.5);
+}
+/// Precondition: not empty.
+double mean(const std::vector<double>& samples);
+/// Standard deviation of the sample (n - 1); 0 for fewer than two.
+double deviation(const std::vector<double>& samples);
+
+/// Columns as wide as their widest cell; the first to the left, the others to the right. Units stand in the heads.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> heads) : rows_{std::move(heads)} {}
+  /// Precondition: as many cells as heads.
+  void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  void print() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// A section's title with what it measures, and an empty line before.
+void print_title(const std::string& title, const std::string& what);
+/// One line below a table.
+void print_note(const std::string& note);
+
+// The sections; each prints its tables.
+void bench_paper(const Options& options);     ///< time of paper missions, beside pagmo2
+void bench_quality(const Options& options);   ///< hypervolume and SLR, beside pagmo2
+void bench_horizon(const Options& options);   ///< warm replanning in moving worlds
+void bench_ablation(const Options& options);  ///< what each part of the optimizer is worth
+void bench_worlds(const Options& options);    ///< plans and flights in the families of worlds
+void bench_scaling(const Options& options);   ///< threads and slaves
+
+}  // namespace jink::tools::lab::bench

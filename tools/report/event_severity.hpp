@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much an event of a flight log matters; the page's data.js has the same.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace jink::tools::report {
+
+enum class EventTone : std::uint8_t { kPlain, kGood, kWarn, kBad };
+
+/// By the event's name and detail.
+[[nodiscard]] inline EventTone event_tone(std::string_view name, std::string_view detail) {
+  static constexpr std::array<std::string_view, 5> kFailed{"collision", "timeout", "left_world", "start_blocked",
+                                                           "aborted"};
+  static constexpr std::array<std::string_view, 3> kBlocked{"blocked", "start_blocked", "invalid"};
+  static constexpr std::array<std::string_view, 7> kWarnings{
+      "fault", "hazard", "refused", "send_failed", "reference_lost", "tracks_refused", "log_dropped"};
+  const auto among = [](const auto& list, std::string_view text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+  };
+  if (name == "reached" || detail.starts_with("done: reached")) return EventTone::kGood;
+  if (among(kFailed, name) || detail.starts_with("done: ")) return EventTone::kBad;
+  if (name == "plan_status") return among(kBlocked, detail) ? EventTone::kBad : EventTone::kPlain;
+  return among(kWarnings, name) ? EventTone::kWarn : EventTone::kPlain;
+}
+
+}  // namespace jink::tools::report
