@@ -1,17 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# A room is a folder: a CMake target, a namespace and an include path of the same name. A room sees the headers of the
+# rooms that it links and no others: each has an include folder of its own, which holds a link to the room under its
+# full path. tests/check_rooms.py holds the tree to that.
+
+# jink_room_headers(VARIABLE): the include folder of the room it is called in.
+function(jink_room_headers variable)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" name ${folder})
+  set(include ${PROJECT_BINARY_DIR}/rooms/${name})
+  get_filename_component(parent ${include}/${folder} DIRECTORY)
+  file(MAKE_DIRECTORY ${parent})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include}/${folder} SYMBOLIC)
+  set(${variable} ${include} PARENT_SCOPE)
+endfunction()
+
 # jink_room([LINK targets...] [PRIVATE targets...] [SOURCES generated files...])
-# Makes the library of the folder it is called in: bridge/tracking gives jink::bridge::tracking, of all *.cpp there.
-# A room sees the headers of the rooms that it links and no others: each has an include folder of its own, which holds a
-# link to the room under its full path. LINK: what its headers use as well. PRIVATE: what its sources alone use.
+# Makes the library of the room it is called in, of all *.cpp there: bridge/tracking gives jink::bridge::tracking.
+# LINK: what its headers use as well. PRIVATE: what its sources alone use.
 function(jink_room)
   cmake_parse_arguments(R "" "" "LINK;PRIVATE;SOURCES" ${ARGN})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name ${folder})
   string(REPLACE "/" "::" alias ${folder})
-  set(include ${PROJECT_BINARY_DIR}/rooms/${name})
-  get_filename_component(parent ${include}/${folder} DIRECTORY)
-  file(MAKE_DIRECTORY ${parent})
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include}/${folder} SYMBOLIC)
+  jink_room_headers(include)
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   if(sources)
     add_library(jink_${name} STATIC ${sources} ${R_SOURCES})

@@ -25,7 +25,7 @@ struct TrackSources {
 
 struct TrackPolicy {
   bool required = true;    ///< no flight without a live track writer
-  double timeout_s = 1.0;  ///< silence of the writers after which the picture is stale
+  double timeout_s = 1.0;  ///< silence of the writers after which the tracks are stale
   double coast_s = 1.0;    ///< how long a track that is no longer reported is predicted on
   TrackSources sources;
 };

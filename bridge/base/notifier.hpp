@@ -9,7 +9,7 @@
 namespace jink::bridge::base {
 
 /// Safe from any thread. Several notifications before a wait count as one.
-class Wake {
+class Notifier {
  public:
   void notify() {
     {

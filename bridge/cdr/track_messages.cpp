@@ -148,9 +148,9 @@ std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const st
     message.frame_id = header.frame_id;
     message.stamp_unix_s = header.stamp_unix_s;
     const std::uint32_t count = input.take_length(kWireTrack_bytes);
-    tracking::TrackSieve sieve(message.tracks, count);
-    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_track(input, header.frame_id == "ned"));
-    message.why = sieve.why();
+    tracking::TrackValidator validator(message.tracks, count);
+    for (std::uint32_t i = 0; i < count; ++i) validator.add(take_track(input, header.frame_id == "ned"));
+    message.why = validator.why();
     return true;
   });
   return whole ? std::optional(std::move(message)) : std::nullopt;
@@ -163,9 +163,9 @@ std::optional<tracking::DecodedTracks> decode_tracked_objects(std::span<const st
     message.frame_id = header.frame_id;
     message.stamp_unix_s = header.stamp_unix_s;
     const std::uint32_t count = input.take_length(kObject_bytes);
-    tracking::TrackSieve sieve(message.tracks, count);
-    for (std::uint32_t i = 0; i < count; ++i) sieve.add(take_object(input));
-    message.why = sieve.why();
+    tracking::TrackValidator validator(message.tracks, count);
+    for (std::uint32_t i = 0; i < count; ++i) validator.add(take_object(input));
+    message.why = validator.why();
     return true;
   });
   return whole ? std::optional(std::move(message)) : std::nullopt;

@@ -20,7 +20,7 @@ constexpr double kInset = 0.05;            // of the flight volume, at most, tha
 constexpr double kInsetMargin = 0.3;       // of the margin, likewise
 constexpr double kPatience = 4.0;          // s, without coming nearer to the waypoint
 constexpr double kGain = 0.5;              // m, that count as nearer
-constexpr double kCautious = 0.3;          // of the cruise speed, while what moves nearby is puzzling
+constexpr double kCautious = 0.3;          // of the cruise speed, while what moves nearby is unexplained
 constexpr int kMostMessages = 64;          // of tracks, in a turn
 constexpr double kStall = 0.2;             // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
@@ -232,7 +232,7 @@ void Companion::start_plan(double now) {
   request.target = mission_.waypoints[waypoint_];
   request.vehicle = mission_.vehicle;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
-  const bool cautious = table_.puzzled(mission_.vehicle.cruise_speed);
+  const bool cautious = table_.has_unexplained(mission_.vehicle.cruise_speed);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
   if (cautious != announced_cautious_)
     event(now, "caution", cautious ? "a new track nearby moves in a way not understood yet: slower" : "over");

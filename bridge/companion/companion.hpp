@@ -77,7 +77,7 @@ struct CompanionParts {
   team::IntentTransport* intents = nullptr;  ///< to and from the team's other vehicles; null: there are none
 };
 
-/// Owns the picture of the flight; the parts outlive it. Not thread-safe: step() from one thread.
+/// Owns the state of the flight; the parts outlive it. Not thread-safe: step() from one thread.
 class Companion {
  public:
   Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts);

@@ -66,7 +66,8 @@ void Companion::record_hazard(double now) {
 // Events for what changed: nothing happens silently, and nothing is said fifty times a second.
 void Companion::announce(double now) {
   if (team_) {
-    for (const team::Team::News& news : team_->news(now)) event(now, news.name, news.detail);
+    for (const team::Team::Notice& take_notices : team_->take_notices(now))
+      event(now, take_notices.name, take_notices.detail);
   }
   if (supervisor_.phase() != announced_phase_) {
     announced_phase_ = supervisor_.phase();

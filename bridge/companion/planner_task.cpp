@@ -7,7 +7,7 @@
 
 namespace jink::bridge::companion {
 
-ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Wake* done)
+ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
     : settings_(settings),
       clock_(clock),
       done_(done),

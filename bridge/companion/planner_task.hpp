@@ -76,7 +76,7 @@ struct PlannerTaskSettings {
 class ThreadedPlanner final : public PlannerTask {
  public:
   /// `done`, where there is one, is notified when a plan is ready; it outlives the planner.
-  ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Wake* done = nullptr);
+  ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done = nullptr);
   ~ThreadedPlanner() override;
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override;
@@ -89,7 +89,7 @@ class ThreadedPlanner final : public PlannerTask {
 
   PlannerTaskSettings settings_;
   const base::Clock& clock_;
-  base::Wake* done_;
+  base::Notifier* done_;
   planner::horizon::HorizonPlanner planner_;
   planner::base::WorkerPool pool_;
   mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_

@@ -9,7 +9,7 @@ namespace jink::bridge::dds {
 
 class DdsAutowareReader::Impl : public DdsTrackFeed {
  public:
-  Impl(DdsNode& node, const base::Clock& clock)
+  Impl(DdsParticipant& node, const base::Clock& clock)
       : DdsTrackFeed(node, clock, {kAutowareTopic, kAutowareType, cdr::decode_tracked_objects, refuse_frame}) {}
 
  private:
@@ -19,11 +19,11 @@ class DdsAutowareReader::Impl : public DdsTrackFeed {
   }
 };
 
-DdsAutowareReader::DdsAutowareReader(DdsNode& node, const base::Clock& clock)
+DdsAutowareReader::DdsAutowareReader(DdsParticipant& node, const base::Clock& clock)
     : impl_(std::make_unique<Impl>(node, clock)) {}
 DdsAutowareReader::~DdsAutowareReader() = default;
-void DdsAutowareReader::notify(base::Wake& wake) {
-  impl_->notify(wake);
+void DdsAutowareReader::notify(base::Notifier& notifier) {
+  impl_->notify(notifier);
 }
 bool DdsAutowareReader::poll(tracking::TrackMessage& message) {
   return impl_->poll(message);

@@ -21,14 +21,14 @@ inline constexpr const char* kAutowareType = "autoware_perception_msgs::msg::dds
 class DdsAutowareReader final : public tracking::TrackSource {
  public:
   /// Returns at once. `node` and `clock` must outlive it. @throws std::runtime_error, one line.
-  DdsAutowareReader(DdsNode& node, const base::Clock& clock);
+  DdsAutowareReader(DdsParticipant& node, const base::Clock& clock);
   ~DdsAutowareReader() override;
   DdsAutowareReader(const DdsAutowareReader&) = delete;
   DdsAutowareReader& operator=(const DdsAutowareReader&) = delete;
 
   bool poll(tracking::TrackMessage& message) override;
   [[nodiscard]] tracking::TrackSourceStatus status() const override;
-  void notify(base::Wake& wake) override;
+  void notify(base::Notifier& notifier) override;
   /// Messages thrown away unread because nobody polled.
   [[nodiscard]] std::uint64_t overruns() const;
   /// Payloads that could not be decoded.

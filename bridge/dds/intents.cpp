@@ -16,7 +16,7 @@ namespace jink::bridge::dds {
 
 class DdsIntents::Impl {
  public:
-  Impl(DdsNode& node, const base::Clock& clock)
+  Impl(DdsParticipant& node, const base::Clock& clock)
       : clock_(clock),
         writer_(node, kIntentsTopic, kIntentsType),
         reader_(node, kIntentsTopic, kIntentsType,
@@ -96,7 +96,7 @@ class DdsIntents::Impl {
   PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
-DdsIntents::DdsIntents(DdsNode& node, const base::Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
+DdsIntents::DdsIntents(DdsParticipant& node, const base::Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
 DdsIntents::~DdsIntents() = default;
 bool DdsIntents::poll(team::IntentMessage& message) {
   return impl_->poll(message);

@@ -26,7 +26,7 @@ class DdsIntents final : public team::IntentTransport {
 
   /// Returns at once; discovery goes on in the background. `node` and `clock` must outlive it.
   /// @throws std::runtime_error, one line, when Fast DDS cannot make reader or writer.
-  DdsIntents(DdsNode& node, const base::Clock& clock);
+  DdsIntents(DdsParticipant& node, const base::Clock& clock);
   ~DdsIntents() override;
   DdsIntents(const DdsIntents&) = delete;
   DdsIntents& operator=(const DdsIntents&) = delete;

@@ -16,20 +16,20 @@ inline constexpr int kMaxDdsDomain = 232;  ///< the port formula of DDS ends the
 
 /// Over UDP and shared memory with plain multicast discovery; a profile in FASTRTPS_DEFAULT_PROFILES_FILE may say
 /// otherwise. Safe from any thread. It must outlive what is made on it.
-class DdsNode {
+class DdsParticipant {
  public:
   /// Returns at once; discovery goes on in the background. `name` is what other tools show.
   /// @throws std::runtime_error, one line, for a domain outside [0, 232] or when Fast DDS cannot open its transports.
-  explicit DdsNode(int domain, const std::string& name = "jink");
-  ~DdsNode();
-  DdsNode(const DdsNode&) = delete;
-  DdsNode& operator=(const DdsNode&) = delete;
+  explicit DdsParticipant(int domain, const std::string& name = "jink");
+  ~DdsParticipant();
+  DdsParticipant(const DdsParticipant&) = delete;
+  DdsParticipant& operator=(const DdsParticipant&) = delete;
 
   [[nodiscard]] int domain() const;
 
   class Impl;  ///< bridge/dds_support.hpp
   /// For what watches discovery itself (dds_discovery).
-  explicit DdsNode(std::unique_ptr<Impl> impl);
+  explicit DdsParticipant(std::unique_ptr<Impl> impl);
   [[nodiscard]] Impl& impl() { return *impl_; }
 
  private:

@@ -100,7 +100,8 @@ std::string discovery_trouble(int domain) {
          "ports Linux gives to nobody who does not ask for them";
 }
 
-DdsNode::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery) : domain_(domain) {
+DdsParticipant::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery)
+    : domain_(domain) {
   if (domain < 0 || domain > kMaxDdsDomain) {
     throw std::runtime_error("dds.domain " + std::to_string(domain) + " is outside [0, 232]");
   }
@@ -126,12 +127,12 @@ DdsNode::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantL
   }
 }
 
-DdsNode::Impl::~Impl() {
+DdsParticipant::Impl::~Impl() {
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
-dds::Topic* DdsNode::Impl::topic(const std::string& name, const std::string& type_name) {
+dds::Topic* DdsParticipant::Impl::topic(const std::string& name, const std::string& type_name) {
   const std::scoped_lock lock(mutex_);
   if (const auto known = topics_.find(name); known != topics_.end()) {
     return known->second->get_type_name() == type_name ? known->second : nullptr;
@@ -143,14 +144,14 @@ dds::Topic* DdsNode::Impl::topic(const std::string& name, const std::string& typ
   return topic;
 }
 
-DdsNode::DdsNode(int domain, const std::string& name) : impl_(std::make_unique<Impl>(domain, name)) {}
-DdsNode::DdsNode(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-DdsNode::~DdsNode() = default;
-int DdsNode::domain() const {
+DdsParticipant::DdsParticipant(int domain, const std::string& name) : impl_(std::make_unique<Impl>(domain, name)) {}
+DdsParticipant::DdsParticipant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+DdsParticipant::~DdsParticipant() = default;
+int DdsParticipant::domain() const {
   return impl_->domain();
 }
 
-PayloadReader::PayloadReader(DdsNode& node, const std::string& topic, const std::string& type_name, Take take)
+PayloadReader::PayloadReader(DdsParticipant& node, const std::string& topic, const std::string& type_name, Take take)
     : node_(node.impl()), take_(std::move(take)) {
   dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = dds::BEST_EFFORT_RELIABILITY_QOS;
@@ -192,7 +193,7 @@ void PayloadReader::on_requested_incompatible_qos(dds::DataReader* /*reader*/,
   mismatched_policy_ = status.last_policy_id;
 }
 
-PayloadWriter::PayloadWriter(DdsNode& node, const std::string& topic, const std::string& type_name,
+PayloadWriter::PayloadWriter(DdsParticipant& node, const std::string& topic, const std::string& type_name,
                              const WriterQos& wanted)
     : node_(node.impl()) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;

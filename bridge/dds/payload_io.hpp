@@ -50,7 +50,7 @@ class PayloadType final : public dds::TopicDataType {
 };
 
 /// The participant. A topic or type that is asked for again is the same one; they live as long as the node.
-class DdsNode::Impl {
+class DdsParticipant::Impl {
  public:
   /// `discovery`, where given, hears of the domain's participants and endpoints; it must outlive this.
   Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery = nullptr);
@@ -82,7 +82,7 @@ class PayloadReader final : private dds::DataReaderListener {
   static constexpr int kDepth = 64;  ///< samples of several writers that may wait for `take`
 
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
-  PayloadReader(DdsNode& node, const std::string& topic, const std::string& type_name, Take take);
+  PayloadReader(DdsParticipant& node, const std::string& topic, const std::string& type_name, Take take);
   /// After it `take` is not called any more.
   ~PayloadReader() override;
   PayloadReader(const PayloadReader&) = delete;
@@ -99,7 +99,7 @@ class PayloadReader final : private dds::DataReaderListener {
   void on_requested_incompatible_qos(dds::DataReader* reader,
                                      const dds::RequestedIncompatibleQosStatus& status) override;
 
-  DdsNode::Impl& node_;
+  DdsParticipant::Impl& node_;
   Take take_;
   Payload sample_;  // the listener's own; reused
   std::atomic<int> writers_ = 0;
@@ -119,7 +119,8 @@ struct WriterQos {
 class PayloadWriter final : private dds::DataWriterListener {
  public:
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
-  PayloadWriter(DdsNode& node, const std::string& topic, const std::string& type_name, const WriterQos& qos = {});
+  PayloadWriter(DdsParticipant& node, const std::string& topic, const std::string& type_name,
+                const WriterQos& qos = {});
   ~PayloadWriter() override;
   PayloadWriter(const PayloadWriter&) = delete;
   PayloadWriter& operator=(const PayloadWriter&) = delete;
@@ -137,7 +138,7 @@ class PayloadWriter final : private dds::DataWriterListener {
  private:
   void on_publication_matched(dds::DataWriter* writer, const dds::PublicationMatchedStatus& matched) override;
 
-  DdsNode::Impl& node_;
+  DdsParticipant::Impl& node_;
   Payload buffer_;  // of write_message; reused
   std::atomic<int> readers_ = 0;
   dds::DataWriter* writer_ = nullptr;

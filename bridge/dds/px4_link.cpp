@@ -52,7 +52,7 @@ std::string px4_topic(const std::string& name_space, const std::string& name) {
 
 class DdsVehicleLink::Impl {
  public:
-  Impl(vehicle::VehicleLink& under, DdsNode& node, const base::Clock& clock, const DdsVehicleOptions& options)
+  Impl(vehicle::VehicleLink& under, DdsParticipant& node, const base::Clock& clock, const DdsVehicleOptions& options)
       : under_(under), clock_(clock) {
     const auto name = [&](const char* topic) { return px4_topic(options.name_space, topic); };
     if (options.setpoints) {
@@ -152,7 +152,7 @@ class DdsVehicleLink::Impl {
   std::optional<PayloadReader> reader_v1_;
 };
 
-DdsVehicleLink::DdsVehicleLink(vehicle::VehicleLink& under, DdsNode& node, const base::Clock& clock,
+DdsVehicleLink::DdsVehicleLink(vehicle::VehicleLink& under, DdsParticipant& node, const base::Clock& clock,
                                const DdsVehicleOptions& options)
     : impl_(std::make_unique<Impl>(under, node, clock, options)) {}
 DdsVehicleLink::~DdsVehicleLink() = default;

@@ -57,7 +57,7 @@ class DdsVehicleLink final : public vehicle::VehicleLink {
 
   /// `under`, `node` and `clock` must outlive it. @throws std::runtime_error, one line, when Fast DDS cannot make a
   /// reader or writer.
-  DdsVehicleLink(vehicle::VehicleLink& under, DdsNode& node, const base::Clock& clock,
+  DdsVehicleLink(vehicle::VehicleLink& under, DdsParticipant& node, const base::Clock& clock,
                  const DdsVehicleOptions& options);
   ~DdsVehicleLink() override;
   DdsVehicleLink(const DdsVehicleLink&) = delete;

@@ -5,7 +5,7 @@
 
 namespace jink::bridge::dds {
 
-DdsTrackFeed::DdsTrackFeed(DdsNode& node, const base::Clock& clock, const Topic& topic)
+DdsTrackFeed::DdsTrackFeed(DdsParticipant& node, const base::Clock& clock, const Topic& topic)
     : clock_(clock),
       topic_(topic),
       reader_(node, topic.name, topic.type,

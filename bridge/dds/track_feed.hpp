@@ -28,10 +28,10 @@ class DdsTrackFeed {
   };
 
   /// `node` and `clock` must outlive it. @throws std::runtime_error, one line, when Fast DDS cannot make a reader.
-  DdsTrackFeed(DdsNode& node, const base::Clock& clock, const Topic& topic);
+  DdsTrackFeed(DdsParticipant& node, const base::Clock& clock, const Topic& topic);
 
   bool poll(tracking::TrackMessage& message) { return inbox_.poll(message); }
-  void notify(base::Wake& wake) { inbox_.notify(wake); }
+  void notify(base::Notifier& notifier) { inbox_.notify(notifier); }
   [[nodiscard]] tracking::TrackSourceStatus status() const;
   [[nodiscard]] std::uint64_t overruns() const { return inbox_.overruns(); }
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }

@@ -29,7 +29,7 @@ void to_wire(const Vec3& v, Wire& wire) {
 
 class DdsTrackReader::Impl : public DdsTrackFeed {
  public:
-  Impl(DdsNode& node, const base::Clock& clock)
+  Impl(DdsParticipant& node, const base::Clock& clock)
       : DdsTrackFeed(node, clock, {kTracksTopic, kTracksType, cdr::decode_obstacle_tracks, refuse_frame}) {}
 
  private:
@@ -39,16 +39,17 @@ class DdsTrackReader::Impl : public DdsTrackFeed {
   }
 };
 
-DdsTrackReader::DdsTrackReader(DdsNode& node, const base::Clock& clock) : impl_(std::make_unique<Impl>(node, clock)) {}
+DdsTrackReader::DdsTrackReader(DdsParticipant& node, const base::Clock& clock)
+    : impl_(std::make_unique<Impl>(node, clock)) {}
 DdsTrackReader::DdsTrackReader(int domain, const base::Clock& clock)
-    : own_node_(std::make_unique<DdsNode>(domain, "jink track reader")),
+    : own_node_(std::make_unique<DdsParticipant>(domain, "jink track reader")),
       impl_(std::make_unique<Impl>(*own_node_, clock)) {}
 DdsTrackReader::~DdsTrackReader() = default;
 bool DdsTrackReader::poll(tracking::TrackMessage& message) {
   return impl_->poll(message);
 }
-void DdsTrackReader::notify(base::Wake& wake) {
-  impl_->notify(wake);
+void DdsTrackReader::notify(base::Notifier& notifier) {
+  impl_->notify(notifier);
 }
 tracking::TrackSourceStatus DdsTrackReader::status() const {
   return impl_->status();
@@ -63,7 +64,7 @@ std::uint64_t DdsTrackReader::malformed() const {
 class DdsTrackWriter::Impl {
  public:
   // A message of some 430 tracks and more does not fit one datagram.
-  explicit Impl(DdsNode& node) : writer_(node, kTracksTopic, kTracksType, {.large = true}) {}
+  explicit Impl(DdsParticipant& node) : writer_(node, kTracksTopic, kTracksType, {.large = true}) {}
 
   bool publish(std::span<const Track> tracks, double stamp_unix_s, const std::string& frame_id) {
     const double sec = std::floor(stamp_unix_s);
@@ -92,9 +93,10 @@ class DdsTrackWriter::Impl {
   PayloadWriter writer_;
 };
 
-DdsTrackWriter::DdsTrackWriter(DdsNode& node) : impl_(std::make_unique<Impl>(node)) {}
+DdsTrackWriter::DdsTrackWriter(DdsParticipant& node) : impl_(std::make_unique<Impl>(node)) {}
 DdsTrackWriter::DdsTrackWriter(int domain)
-    : own_node_(std::make_unique<DdsNode>(domain, "jink track writer")), impl_(std::make_unique<Impl>(*own_node_)) {}
+    : own_node_(std::make_unique<DdsParticipant>(domain, "jink track writer")),
+      impl_(std::make_unique<Impl>(*own_node_)) {}
 DdsTrackWriter::~DdsTrackWriter() = default;
 bool DdsTrackWriter::publish(std::span<const Track> tracks, double stamp_unix_s, const std::string& frame_id) {
   return impl_->publish(tracks, stamp_unix_s, frame_id);

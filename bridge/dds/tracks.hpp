@@ -28,8 +28,8 @@ class DdsTrackReader final : public tracking::TrackSource {
  public:
   /// Returns at once; discovery goes on in the background. `node` and `clock` must outlive the reader.
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
-  DdsTrackReader(DdsNode& node, const base::Clock& clock);
-  /// On a node of its own. @throws as DdsNode's.
+  DdsTrackReader(DdsParticipant& node, const base::Clock& clock);
+  /// On a node of its own. @throws as DdsParticipant's.
   DdsTrackReader(int domain, const base::Clock& clock);
   ~DdsTrackReader() override;
   DdsTrackReader(const DdsTrackReader&) = delete;
@@ -37,7 +37,7 @@ class DdsTrackReader final : public tracking::TrackSource {
 
   bool poll(tracking::TrackMessage& message) override;
   [[nodiscard]] tracking::TrackSourceStatus status() const override;
-  void notify(base::Wake& wake) override;
+  void notify(base::Notifier& notifier) override;
 
   /// Messages thrown away unread because nobody polled.
   [[nodiscard]] std::uint64_t overruns() const;
@@ -46,7 +46,7 @@ class DdsTrackReader final : public tracking::TrackSource {
 
  private:
   class Impl;
-  std::unique_ptr<DdsNode> own_node_;  // outlives impl_; null where the node is another's
+  std::unique_ptr<DdsParticipant> own_node_;  // outlives impl_; null where the node is another's
   std::unique_ptr<Impl> impl_;
 };
 
@@ -54,8 +54,8 @@ class DdsTrackReader final : public tracking::TrackSource {
 class DdsTrackWriter {
  public:
   /// Returns at once; discovery goes on in the background. `node` must outlive the writer. @throws as DdsTrackReader's.
-  explicit DdsTrackWriter(DdsNode& node);
-  /// On a node of its own. @throws as DdsNode's.
+  explicit DdsTrackWriter(DdsParticipant& node);
+  /// On a node of its own. @throws as DdsParticipant's.
   explicit DdsTrackWriter(int domain);
   ~DdsTrackWriter();
   DdsTrackWriter(const DdsTrackWriter&) = delete;
@@ -70,7 +70,7 @@ class DdsTrackWriter {
 
  private:
   class Impl;
-  std::unique_ptr<DdsNode> own_node_;  // outlives impl_; null where the node is another's
+  std::unique_ptr<DdsParticipant> own_node_;  // outlives impl_; null where the node is another's
   std::unique_ptr<Impl> impl_;
 };
 

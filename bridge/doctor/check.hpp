@@ -10,7 +10,7 @@ struct Check {
   enum class Level {
     kOk,
     kWarning,  ///< a flight is possible; something will hurt when things go wrong
-    kFault,    ///< no flight like this
+    kFault,    ///< not ready to fly
     kMissing,  ///< somebody who is needed is not there
   };
   Level level = Level::kOk;

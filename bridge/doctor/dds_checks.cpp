@@ -41,7 +41,7 @@ using Judge = std::function<Verdict(const dds::Payload&)>;
 /// A topic that the mission reads, and what came on it.
 class Probe {
  public:
-  Probe(dds::DdsNode& node, std::string topic, const char* type, Judge judge)
+  Probe(dds::DdsParticipant& node, std::string topic, const char* type, Judge judge)
       : topic_(std::move(topic)),
         type_(type),
         judge_(std::move(judge)),
@@ -165,9 +165,9 @@ bool near(const std::string& wanted, const std::string& other) {
 class Inspector {
  public:
   explicit Inspector(int domain)
-      : domain_(domain), node_(std::make_unique<dds::DdsNode::Impl>(domain, "jink doctor", &discovery_)) {}
+      : domain_(domain), node_(std::make_unique<dds::DdsParticipant::Impl>(domain, "jink doctor", &discovery_)) {}
 
-  dds::DdsNode& node() { return node_; }
+  dds::DdsParticipant& node() { return node_; }
 
   void settle() {
     endpoints_ = discovery_.endpoints();
@@ -290,7 +290,7 @@ class Inspector {
 
   int domain_;
   dds::DdsDiscovery discovery_;  // outlives node_
-  dds::DdsNode node_;
+  dds::DdsParticipant node_;
   std::vector<dds::DdsEndpoint> endpoints_;
   std::vector<std::string> participants_;
 };

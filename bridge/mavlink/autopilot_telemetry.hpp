@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the autopilot has told over MAVLink, message by message, as one picture. No transport, no clock, no lock: the
+// What the autopilot has told over MAVLink, message by message, as one state. No transport, no clock, no lock: the
 // time comes in, and whoever owns it guards it.
 #pragma once
 

@@ -52,7 +52,7 @@ MotionSample mean(const MotionSample& a, const MotionSample& b) {
 
 }  // namespace
 
-void LearnedRoom::saw(const Vec3& position, double radius) {
+void LearnedBounds::saw(const Vec3& position, double radius) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool upper : {false, true}) {
       Side& side = sides_[static_cast<std::size_t>(axis)][upper ? 1 : 0];
@@ -62,7 +62,7 @@ void LearnedRoom::saw(const Vec3& position, double radius) {
   }
 }
 
-void LearnedRoom::turned(std::uint64_t track, int axis, bool upper, double surface) {
+void LearnedBounds::turned(std::uint64_t track, int axis, bool upper, double surface) {
   Side& side = sides_[static_cast<std::size_t>(axis)][upper ? 1 : 0];
   const double outward = along(surface, upper);
   if (outward < side.extent - kBeyond) return;
@@ -76,7 +76,7 @@ void LearnedRoom::turned(std::uint64_t track, int axis, bool upper, double surfa
   side.confirmed = false;
 }
 
-planner::base::Box LearnedRoom::bounds(double radius) const {
+planner::base::Box LearnedBounds::bounds(double radius) const {
   planner::base::Box box;
   for (int axis = 0; axis < 3; ++axis) {
     const auto& [lower, upper] = sides_[static_cast<std::size_t>(axis)];
@@ -86,12 +86,12 @@ planner::base::Box LearnedRoom::bounds(double radius) const {
   return box;
 }
 
-bool LearnedTrack::Trial::plain_wrong() const {
+bool MotionLearner::Trial::plain_wrong() const {
   return plain_misfit > kPlainMisfit + noise;
 }
 
 // Makes room for as many again. Exact measurements are enough of every other one; of noisy ones each counts.
-void LearnedTrack::thin_out(bool exact) {
+void MotionLearner::thin_out(bool exact) {
   if (!exact && spacing_ > 0.5 * kCoarsest) {
     samples_.erase(samples_.begin());
     return;
@@ -103,7 +103,7 @@ void LearnedTrack::thin_out(bool exact) {
   spacing_ *= 2.0;
 }
 
-void LearnedTrack::remember(const MotionSample& sample, bool exact) {
+void MotionLearner::remember(const MotionSample& sample, bool exact) {
   if (spacing_ == 0.0) spacing_ = kSpacing;
   const auto early = [&] { return !samples_.empty() && sample.t - begun_ < spacing_ - 1e-3; };
   if (early()) {
@@ -116,8 +116,8 @@ void LearnedTrack::remember(const MotionSample& sample, bool exact) {
   begun_ = sample.t;
 }
 
-void LearnedTrack::observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate,
-                           std::uint64_t name, LearnedRoom& room) {
+void MotionLearner::observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate,
+                            std::uint64_t name, LearnedBounds& room) {
   if (first_ < 0.0) first_ = t;
   remember({t, measured.position, measured.velocity}, exact(measured));
   recent_.push_back({t, measured.position, measured.velocity});
@@ -142,11 +142,11 @@ void LearnedTrack::observe(double t, const planner::base::Track& measured, const
   const bool fails =
       std::any_of(trials_.begin(), trials_.end(), [](const Trial& trial) { return trial.plain_wrong(); });
   const bool understood = proven_ && *proven_ < kUnderstood + kSigmas * estimate.position_sigma;
-  puzzling_ = !understood && !plain_ && (curves || fails);
+  unexplained_ = !understood && !plain_ && (curves || fails);
 }
 
-void LearnedTrack::turned(double t, int axis, double where, double speed, std::uint64_t name, double radius,
-                          LearnedRoom& room) {
+void MotionLearner::turned(double t, int axis, double where, double speed, std::uint64_t name, double radius,
+                           LearnedBounds& room) {
   const bool upper = speed > 0.0;
   double& bound = (upper ? turns_.max : turns_.min)[axis];
   int& returns = returns_[static_cast<std::size_t>(axis)][upper ? 1 : 0];
@@ -157,8 +157,8 @@ void LearnedTrack::turned(double t, int axis, double where, double speed, std::u
 }
 
 // Two straight pieces at the same speed, one axis turned round.
-void LearnedTrack::look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name,
-                                 LearnedRoom& room) {
+void MotionLearner::look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name,
+                                  LearnedBounds& room) {
   const std::size_t window = exact(measured) ? 1 : kNoisyWindow;
   if (recent_.size() < 2 * window) return;
   if (!exact(measured) && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
@@ -195,7 +195,7 @@ void LearnedTrack::look_for_turn(double t, const planner::base::Track& measured,
 }
 
 // Holds the fits on trial against the newest estimate.
-void LearnedTrack::judge(double t, const planner::base::Track& estimate) {
+void MotionLearner::judge(double t, const planner::base::Track& estimate) {
   const double noise = kSigmas * estimate.position_sigma;
   const auto lead = [t](const Trial& trial) { return t - trial.begun; };
   for (Trial& trial : trials_) {
@@ -237,7 +237,7 @@ void LearnedTrack::judge(double t, const planner::base::Track& estimate) {
   }
 }
 
-void LearnedTrack::fit(double t, const planner::base::Track& measured, const planner::base::Track& estimate) {
+void MotionLearner::fit(double t, const planner::base::Track& measured, const planner::base::Track& estimate) {
   next_fit_ = t + kFitPeriod * (plain_ ? kPatience : std::clamp(0.25 * failures_, 1.0, kPatience));
   if (samples_.empty() || samples_.back().t - samples_.front().t < kShortest) return;
   const double guess = proven_ ? frequency_ : 0.0;
@@ -249,14 +249,14 @@ void LearnedTrack::fit(double t, const planner::base::Track& measured, const pla
 }
 
 // Whether a turn of `motion` is where the track itself turned again and again.
-bool LearnedTrack::certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const {
+bool MotionLearner::certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const {
   const auto bound = [&](const planner::base::Box& box) { return (turn.upper ? box.max : box.min)[turn.axis]; };
   return bound(motion.room) == bound(turns_) &&
          returns_[static_cast<std::size_t>(turn.axis)][turn.upper ? 1 : 0] >= kCertain;
 }
 
-std::optional<Forecast> LearnedTrack::forecast(double now, double t, const planner::base::Track& estimate,
-                                               const LearnedRoom& room) const {
+std::optional<Forecast> MotionLearner::forecast(double now, double t, const planner::base::Track& estimate,
+                                                const LearnedBounds& room) const {
   Forecast forecast;
   forecast.radius = estimate.radius;
   forecast.position_sigma = estimate.position_sigma;

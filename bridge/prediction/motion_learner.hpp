@@ -17,7 +17,7 @@ namespace jink::bridge::prediction {
 
 /// Where the surfaces of all tracks have been, and where they were thrown back. A bound is known when two different
 /// tracks turned at it and none was ever beyond.
-class LearnedRoom {
+class LearnedBounds {
  public:
   void saw(const Vec3& position, double radius);
   void turned(std::uint64_t track, int axis, bool upper, double surface);
@@ -38,11 +38,11 @@ class LearnedRoom {
 /// better than plain prediction: each fit is held against what comes in the following kLead seconds, longer where both
 /// do. A turn is relied on where the track turned twice, and avoided besides plain prediction where it turned once or
 /// others did.
-class LearnedTrack {
+class MotionLearner {
  public:
   /// The newest measurement, as measured and as estimated, at its instant `t`. O(samples on trial).
   void observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate, std::uint64_t name,
-               LearnedRoom& room);
+               LearnedBounds& room);
 
   /// When the next fit is due.
   [[nodiscard]] double fit_due() const { return next_fit_; }
@@ -51,14 +51,14 @@ class LearnedTrack {
 
   /// What is known of the way from `now` on, or nothing. `estimate` is the newest estimate, of the instant `t`.
   [[nodiscard]] std::optional<Forecast> forecast(double now, double t, const planner::base::Track& estimate,
-                                                 const LearnedRoom& room) const;
+                                                 const LearnedBounds& room) const;
 
   /// Whether it is new, and not yet understood: plain prediction has been seen to fail or does not fit what is
-  /// measured, and nothing else has proved right. Never longer than kPuzzle.
-  [[nodiscard]] bool puzzling(double t) const { return puzzling_ && t - first_ < kPuzzle; }
+  /// measured, and nothing else has proved right. Never longer than kLongestUnexplained.
+  [[nodiscard]] bool unexplained(double t) const { return unexplained_ && t - first_ < kLongestUnexplained; }
 
-  static constexpr double kLead = 1.0;    ///< s
-  static constexpr double kPuzzle = 2.0;  ///< s
+  static constexpr double kLead = 1.0;                ///< s
+  static constexpr double kLongestUnexplained = 2.0;  ///< s
 
  private:
   static constexpr std::size_t kMost = 64;  // samples
@@ -74,9 +74,9 @@ class LearnedTrack {
   void remember(const MotionSample& sample, bool exact);
   void thin_out(bool exact);
   void judge(double t, const planner::base::Track& estimate);
-  void look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, LearnedRoom& room);
+  void look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, LearnedBounds& room);
   [[nodiscard]] bool certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const;
-  void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedRoom& room);
+  void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedBounds& room);
 
   std::vector<MotionSample> samples_;  // thinned out as they grow old
   double spacing_ = 0.0;
@@ -85,7 +85,7 @@ class LearnedTrack {
   std::vector<Trial> trials_;         // oldest first
   double next_fit_ = 0.0;
   double first_ = -1.0;  // when it was observed first
-  bool puzzling_ = false;
+  bool unexplained_ = false;
   double frequency_ = 0.0;                       // of the last fit; 0: none
   std::optional<double> proven_;                 // m, misfit of the last trial that ended well
   bool plain_ = false;                           // constant acceleration does as well

@@ -68,7 +68,7 @@ void Team::listen(double now, const vehicle::VehicleState& own) {
     if (message.writer != transport_.identity()) take(message, own);
   }
   forget_the_silent(now);
-  find_namesakes(now);
+  find_duplicate_systems(now);
 }
 
 void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) {
@@ -82,7 +82,7 @@ void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) 
   peer.seen = message.received;
   const std::optional<double> delay = peer.clock.delay(message.received, message.stamp_age);
   if (peer.clock.off() && !std::exchange(peer.announced_clock, true)) {
-    news_.push_back(
+    notices_.push_back(
         {"team_clock",
          name_of(peer.vehicle) + ": its stamps are not this computer's time; only changes of its delay are known"});
   }
@@ -98,7 +98,7 @@ void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) 
   }
   const double told = message.received - *delay;
   if (peer.placed >= 0.0 && told < peer.told) return;  // overtaken on the way
-  if (peer.placed < 0.0) news_.push_back({"team_vehicle", name_of(peer.vehicle) + " tells where it will be"});
+  if (peer.placed < 0.0) notices_.push_back({"team_vehicle", name_of(peer.vehicle) + " tells where it will be"});
   peer.placed = message.received;
   peer.told = told;
   peer.path = message.intent.path;
@@ -114,11 +114,11 @@ void Team::forget_the_silent(double now) {
   for (auto& [writer, peer] : peers_) {
     const bool silent = peer.placed >= 0.0 && now - peer.placed > limit;
     if (silent && !peer.announced_silent) {
-      news_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
-                                        " s, it is taken to hang where its path ended"});
+      notices_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
+                                           " s, it is taken to hang where its path ended"});
     }
     peer.announced_silent = silent;
-    if (silent && now - peer.placed > kHangs) peer.placed = -1.0;
+    if (silent && now - peer.placed > kForgetPeer) peer.placed = -1.0;
   }
   // Who began anew speaks for itself again.
   const auto replaced = [&](const Peer& old) {
@@ -126,10 +126,11 @@ void Team::forget_the_silent(double now) {
              return !other.second.announced_silent && system_of(other.second.vehicle) == system_of(old.vehicle);
            });
   };
-  std::erase_if(peers_, [&](const auto& item) { return now - item.second.seen > kHangs || replaced(item.second); });
+  std::erase_if(peers_,
+                [&](const auto& item) { return now - item.second.seen > kForgetPeer || replaced(item.second); });
 }
 
-void Team::find_namesakes(double now) {
+void Team::find_duplicate_systems(double now) {
   std::map<std::uint32_t, int> bearers;
   ++bearers[system_of(own_vehicle_)];
   for (const auto& [writer, peer] : peers_) {
@@ -137,12 +138,12 @@ void Team::find_namesakes(double now) {
   }
   for (const auto& [system, count] : bearers) {
     if (system == 0 || count < 2) {
-      namesakes_.erase(system);
-    } else if (namesakes_.insert(system).second) {
-      news_.push_back({"team_same_id", std::to_string(count) + " vehicles of the team are MAVLink system " +
-                                           std::to_string(system) +
-                                           (system == system_of(own_vehicle_) ? ", as this one" : "") +
-                                           ": each is avoided, but each needs a MAV_SYS_ID of its own"});
+      duplicate_systems_.erase(system);
+    } else if (duplicate_systems_.insert(system).second) {
+      notices_.push_back({"team_same_id", std::to_string(count) + " vehicles of the team are MAVLink system " +
+                                              std::to_string(system) +
+                                              (system == system_of(own_vehicle_) ? ", as this one" : "") +
+                                              ": each is avoided, but each needs a MAV_SYS_ID of its own"});
     }
   }
 }
@@ -207,11 +208,11 @@ void Team::measure_deviation(double now, const vehicle::VehicleState& own, const
   deviation_at_ = now;
 }
 
-std::vector<Team::News> Team::news(double now) {
+std::vector<Team::Notice> Team::take_notices(double now) {
   if (std::floor(now) != std::floor(last_news_)) {
     const auto recurs = [&](std::uint64_t count, std::uint64_t& said, const char* name, const std::string& detail) {
       if (count != std::exchange(said, count))
-        news_.push_back({name, detail + " (" + std::to_string(count) + " so far)"});
+        notices_.push_back({name, detail + " (" + std::to_string(count) + " so far)"});
     };
     const IntentStatus status = transport_.status();
     recurs(unplaced_, said_unplaced_, "team_unplaced", unplaced_why_);
@@ -222,7 +223,7 @@ std::vector<Team::News> Team::news(double now) {
     recurs(status.refused, said_refused_, "team_refused", status.last_refusal);
   }
   last_news_ = now;
-  return std::exchange(news_, {});
+  return std::exchange(notices_, {});
 }
 
 std::size_t Team::vehicles() const {

@@ -25,27 +25,27 @@ namespace jink::bridge::team {
 /// Where it has not, both avoid each other. Not thread-safe.
 class Team {
  public:
-  static constexpr double kPeriod = 0.2;      ///< s, between two intents at most
-  static constexpr double kTold = 8.0;        ///< s of the path ahead that are told
-  static constexpr double kRightOfWay = 2.0;  ///< s
-  static constexpr double kFresh = 1.0;       ///< s without a word, after which a path is doubted more and more
-  static constexpr double kHangs = 60.0;      ///< s without a word, after which a vehicle is taken to be gone
+  static constexpr double kPeriod = 0.2;       ///< s, between two intents at most
+  static constexpr double kTold = 8.0;         ///< s of the path ahead that are told
+  static constexpr double kRightOfWay = 2.0;   ///< s
+  static constexpr double kFresh = 1.0;        ///< s without a word, after which a path is doubted more and more
+  static constexpr double kForgetPeer = 60.0;  ///< s without a word, after which a vehicle is taken to be gone
   static constexpr std::size_t kMostVehicles = 64;
 
   /// Something that people are to be told.
-  struct News {
+  struct Notice {
     std::string name, detail;
   };
 
   /// `radius` is that of this vehicle. A vehicle silent for kFresh + `coast_s` is reported and taken to hang where its
-  /// path ended: whoever has handed over to HOLD and ended its program is still there. After kHangs it is forgotten.
-  /// The transport must outlive the team.
+  /// path ended: whoever has handed over to HOLD and ended its program is still there. After kForgetPeer it is
+  /// forgotten. The transport must outlive the team.
   Team(IntentTransport& transport, double radius, double coast_s);
 
-  /// Takes in what has come. An intent counts from its stamp, as StampClock believes it; where that knows the changes
-  /// of the delay alone, the vehicle may be farther off its path by what it flies in a tenth of a second. One whose
-  /// place is not known, because its sender or this vehicle does not know its origin, is dropped and reported, never
-  /// guessed.
+  /// Takes in what has come. An intent counts from its stamp, as ClockOffsetEstimator believes it; where that knows the
+  /// changes of the delay alone, the vehicle may be farther off its path by what it flies in a tenth of a second. One
+  /// whose place is not known, because its sender or this vehicle does not know its origin, is dropped and reported,
+  /// never guessed.
   void listen(double now, const vehicle::VehicleState& own);
 
   /// The others' paths for a plan that begins at `start`, of which they are valid at time 0: on its path each, with an
@@ -60,7 +60,7 @@ class Team {
             std::uint64_t plans);
 
   /// What happened since the last call; what recurs, once a second.
-  std::vector<News> news(double now);
+  std::vector<Notice> take_notices(double now);
 
   /// Vehicles heard and placed now.
   [[nodiscard]] std::size_t vehicles() const;
@@ -70,7 +70,7 @@ class Team {
  private:
   struct Peer {
     std::uint64_t vehicle = 0;
-    tracking::StampClock clock;
+    tracking::ClockOffsetEstimator clock;
     double seen = 0.0;              // reception of the newest message
     double placed = -1.0;           // reception of the newest that could be used; negative: none
     double told = 0.0;              // its stamp, in our clock
@@ -81,7 +81,7 @@ class Team {
   };
   void take(const IntentMessage& message, const vehicle::VehicleState& own);
   void forget_the_silent(double now);
-  void find_namesakes(double now);
+  void find_duplicate_systems(double now);
   [[nodiscard]] planner::base::TimedPath committed(double now, const vehicle::VehicleState& own,
                                                    const setpoints::SetpointStream* followed) const;
   void measure_deviation(double now, const vehicle::VehicleState& own, const setpoints::SetpointStream* followed);
@@ -90,9 +90,9 @@ class Team {
   double radius_;
   double coast_s_;
   std::uint64_t own_vehicle_ = 0;
-  std::map<std::uint64_t, Peer> peers_;  // by writer
-  std::set<std::uint32_t> namesakes_;    // systems that two live vehicles have
-  std::vector<News> news_;
+  std::map<std::uint64_t, Peer> peers_;        // by writer
+  std::set<std::uint32_t> duplicate_systems_;  // systems that two live vehicles have
+  std::vector<Notice> notices_;
   std::uint64_t unplaced_ = 0, late_ = 0, crowded_ = 0, untold_ = 0;
   std::uint64_t said_unplaced_ = 0, said_late_ = 0, said_crowded_ = 0, said_untold_ = 0, said_refused_ = 0;
   std::string unplaced_why_;

@@ -12,7 +12,7 @@ constexpr double kStampRate = 0.1;
 
 }  // namespace
 
-std::optional<double> StampClock::delay(double received, double stamp_age) {
+std::optional<double> ClockOffsetEstimator::delay(double received, double stamp_age) {
   const double stamp = received - stamp_age;  // to within a constant
   const bool first = std::exchange(first_, false);
   const bool advanced = !first && stamp - stamp_ > kStampRate * (received - received_);

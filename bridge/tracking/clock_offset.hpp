@@ -11,7 +11,7 @@ namespace jink::bridge::tracking {
 /// off: then the smallest stamp age so far stands for the offset and what exceeds it for the delay. A message whose
 /// delay exceeds kLongestDelay is too old; where that lasts for kLongestDelay with stamps that advance, a clock was set
 /// and its offset is learned anew. A writer whose stamps never advance does not stamp: its delay is taken for 0.
-class StampClock {
+class ClockOffsetEstimator {
  public:
   static constexpr double kLongestDelay = 1.0;  ///< s, from stamp to reception
 

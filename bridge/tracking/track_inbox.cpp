@@ -18,11 +18,11 @@ const char* refusal(const planner::base::Track& t) {
   return nullptr;
 }
 
-TrackSieve::TrackSieve(TrackMessage& message, std::size_t stated) : message_(message), stated_(stated) {
+TrackValidator::TrackValidator(TrackMessage& message, std::size_t stated) : message_(message), stated_(stated) {
   message_.tracks.reserve(std::min(stated, TrackLimits::kTracksPerMessage));
 }
 
-void TrackSieve::add(const planner::base::Track& track) {
+void TrackValidator::add(const planner::base::Track& track) {
   if (++added_ > TrackLimits::kTracksPerMessage) {
     ++message_.dropped;
   } else if (const char* bad = refusal(track); bad != nullptr) {
@@ -34,7 +34,7 @@ void TrackSieve::add(const planner::base::Track& track) {
   }
 }
 
-std::string TrackSieve::why() const {
+std::string TrackValidator::why() const {
   if (stated_ > TrackLimits::kTracksPerMessage) {
     return "a message of " + std::to_string(stated_) + " tracks; at most " +
            std::to_string(TrackLimits::kTracksPerMessage) + " are taken";
@@ -53,12 +53,12 @@ void TrackInbox::put(TrackMessage message, const std::string& why) {
   status_.dropped_tracks += message.dropped;
   if (!why.empty()) status_.last_refusal = why;
   queue_.push_back(std::move(message));
-  if (wake_ != nullptr) wake_->notify();
+  if (notifier_ != nullptr) notifier_->notify();
 }
 
-void TrackInbox::notify(base::Wake& wake) {
+void TrackInbox::notify(base::Notifier& notifier) {
   const std::scoped_lock lock(mutex_);
-  wake_ = &wake;
+  notifier_ = &notifier;
 }
 
 void TrackInbox::refuse_frame(const std::string& why) {

@@ -31,10 +31,10 @@ struct TrackLimits {
 
 /// Takes the tracks of one message in, one by one; what is non-finite, absurd or beyond kTracksPerMessage stays out and
 /// is counted in message.dropped. Pure.
-class TrackSieve {
+class TrackValidator {
  public:
-  /// `stated`: how many tracks the message has. `message` must outlive the sieve.
-  TrackSieve(TrackMessage& message, std::size_t stated);
+  /// `stated`: how many tracks the message has. `message` must outlive the validator.
+  TrackValidator(TrackMessage& message, std::size_t stated);
 
   void add(const planner::base::Track& track);
   /// Why the last of those left out was; empty when none was.
@@ -53,20 +53,20 @@ struct DecodedTracks {
   std::string frame_id;
   double stamp_unix_s = 0.0;
   TrackMessage tracks;  ///< writer, received and stamp_age are the caller's
-  std::string why;      ///< TrackSieve::why()
+  std::string why;      ///< TrackValidator::why()
 };
 
 /// Messages on their way to poll(), and what was refused. When nobody polls, the oldest go. Safe from any thread.
 class TrackInbox {
  public:
-  /// `why`: what TrackSieve::why() said.
+  /// `why`: what TrackValidator::why() said.
   void put(TrackMessage message, const std::string& why);
   /// A message refused whole for its frame_id.
   void refuse_frame(const std::string& why);
 
   bool poll(TrackMessage& message);
   /// Notified from now on by each message; outlives the inbox.
-  void notify(base::Wake& wake);
+  void notify(base::Notifier& notifier);
   /// `writers` is left at 0: the transport knows.
   [[nodiscard]] TrackSourceStatus status() const;
   /// Messages thrown away unread because nobody polled.
@@ -77,7 +77,7 @@ class TrackInbox {
   std::deque<TrackMessage> queue_;
   TrackSourceStatus status_;
   std::uint64_t overruns_ = 0;
-  base::Wake* wake_ = nullptr;
+  base::Notifier* notifier_ = nullptr;
 };
 
 }  // namespace jink::bridge::tracking

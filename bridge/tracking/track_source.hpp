@@ -18,7 +18,8 @@ struct TrackMessage {
   double stamp_age = 0.0;    ///< system time at reception minus the message's stamp; as measured, may be absurd
   std::vector<planner::base::Track> tracks;
   std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
-  bool watches = true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
+  bool sends_when_empty =
+      true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
 };
 
 /// What was refused at the door since the start; for events and summaries.
@@ -37,9 +38,9 @@ class TrackSource {
   /// Takes the oldest message not yet taken; false when there is none. Never blocks.
   virtual bool poll(TrackMessage& message) = 0;
   [[nodiscard]] virtual TrackSourceStatus status() const = 0;
-  /// From now on `wake`, which outlives the source, is notified when a message has come. Where nothing comes by itself
-  /// (virtual time) it does nothing.
-  virtual void notify(base::Wake& /*wake*/) {}
+  /// From now on `notifier`, which outlives the source, is notified when a message has come. Where nothing comes by
+  /// itself (virtual time) it does nothing.
+  virtual void notify(base::Notifier& /*notifier*/) {}
 };
 
 }  // namespace jink::bridge::tracking

@@ -22,8 +22,8 @@ class TrackSources final : public TrackSource {
   /// The sum; last_refusal is the newest among them, as far as calls of status() tell: of those that changed between
   /// two calls, the later source's.
   [[nodiscard]] TrackSourceStatus status() const override;
-  void notify(base::Wake& wake) override {
-    for (Source& source : sources_) source.source->notify(wake);
+  void notify(base::Notifier& notifier) override {
+    for (Source& source : sources_) source.source->notify(notifier);
   }
 
  private:

@@ -71,10 +71,10 @@ void TrackTable::ingest(const TrackMessage& message) {
   }
   remember(message);
   const double measured = message.received - *delay;
-  if (message.watches) newest_message_ = std::max(newest_message_, message.received);
+  if (message.sends_when_empty) newest_message_ = std::max(newest_message_, message.received);
   Writer& writer = writers_[message.writer];
   writer.believed = message.received;
-  writer.watches = message.watches;
+  writer.sends_when_empty = message.sends_when_empty;
   for (const planner::base::Track& track : message.tracks) {
     if (refusal(track) != nullptr) {
       ++counts_.invalid_tracks;
@@ -130,7 +130,7 @@ void TrackTable::learn(const TrackMessage& message, double t) {
       --learned_;
     }
     if (near && !entry.learned && learned_ < kMostLearned) {
-      entry.learned = std::make_unique<prediction::LearnedTrack>();
+      entry.learned = std::make_unique<prediction::MotionLearner>();
       ++learned_;
     }
     if (!entry.learned) continue;
@@ -143,11 +143,11 @@ void TrackTable::learn(const TrackMessage& message, double t) {
   for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track);
 }
 
-bool TrackTable::puzzled(double speed) const {
+bool TrackTable::has_unexplained(double speed) const {
   if (!vehicle_) return false;
   return std::any_of(entries_.begin(), entries_.end(), [&](const auto& item) {
     const Entry& entry = item.second;
-    if (!entry.learned || entry.is_self || !entry.learned->puzzling(entry.measured)) return false;
+    if (!entry.learned || entry.is_self || !entry.learned->unexplained(entry.measured)) return false;
     const double reach = kMeeting * (speed + entry.track.velocity.norm());
     return (entry.track.position - *vehicle_).squaredNorm() < reach * reach;
   });
@@ -181,7 +181,7 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
 int TrackTable::live_writers(double now, double timeout_s) const {
   return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
     const Writer& writer = item.second;
-    return writer.watches && writer.believed >= 0.0 && now - writer.believed <= timeout_s;
+    return writer.sends_when_empty && writer.believed >= 0.0 && now - writer.believed <= timeout_s;
   }));
 }
 

@@ -35,8 +35,8 @@ class TrackTable {
   /// `coast_s`: how long a track lives on after the last message that held it.
   explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
 
-  /// Takes in one message. The measurement's instant is the reception less the delay that the writer's StampClock
-  /// believes; a message that is too late for it is left out, as if it had not come.
+  /// Takes in one message. The measurement's instant is the reception less the delay that the writer's
+  /// ClockOffsetEstimator believes; a message that is too late for it is left out, as if it had not come.
   ///
   /// A message in which every track that should have moved stands where it stood in the one before, to the last bit, is
   /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
@@ -55,15 +55,15 @@ class TrackTable {
                                             std::vector<prediction::Forecast>* forecasts = nullptr);
 
   /// Whether a track that the vehicle could meet within kMeeting at `speed` moves in a way that is not understood yet
-  /// (LearnedTrack::puzzling). As of the last messages.
-  [[nodiscard]] bool puzzled(double speed) const;
+  /// (MotionLearner::unexplained). As of the last messages.
+  [[nodiscard]] bool has_unexplained(double speed) const;
 
-  /// Reception of the newest message of any writer that watches; negative: none yet.
+  /// Reception of the newest message of any writer that sends when it sees nothing; negative: none yet.
   [[nodiscard]] double newest_message() const { return newest_message_; }
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
   /// Living tracks that are taken for the vehicle itself.
   [[nodiscard]] int own_tracks() const { return own_tracks_; }
-  /// Writers that watch and whose newest believed message is no older than `timeout_s`.
+  /// Writers that send when they see nothing and whose newest believed message is no older than `timeout_s`.
   [[nodiscard]] int live_writers(double now, double timeout_s) const;
 
   static constexpr std::size_t kMost = 20000;       ///< living tracks
@@ -76,11 +76,11 @@ class TrackTable {
 
  private:
   struct Entry {
-    planner::base::Track track;                         // as estimated from the measurements
-    double measured = 0.0;                              // companion's clock
-    std::unique_ptr<prediction::ImmFilter> filter;      // of a track that is measured with noise
-    std::unique_ptr<prediction::LearnedTrack> learned;  // of a track that is near enough
-    double seen = 0.0;                                  // reception of the last message that held it
+    planner::base::Track track;                          // as estimated from the measurements
+    double measured = 0.0;                               // companion's clock
+    std::unique_ptr<prediction::ImmFilter> filter;       // of a track that is measured with noise
+    std::unique_ptr<prediction::MotionLearner> learned;  // of a track that is near enough
+    double seen = 0.0;                                   // reception of the last message that held it
     std::optional<Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
   };
@@ -89,11 +89,11 @@ class TrackTable {
     Vec3 position;
   };
   struct Writer {
-    StampClock clock;
+    ClockOffsetEstimator clock;
     std::vector<Seen> last;  // what the newest message that was taken in held
     double received = 0.0;
     double believed = -1.0;  // reception of the newest message that was taken in
-    bool watches = true;
+    bool sends_when_empty = true;
   };
   std::optional<double> delay_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
@@ -111,7 +111,7 @@ class TrackTable {
   std::map<std::uint64_t, Writer> writers_;
   std::map<Key, Entry> entries_;
   std::optional<Vec3> vehicle_;  // where it was last
-  prediction::LearnedRoom room_;
+  prediction::LearnedBounds room_;
   std::size_t learned_ = 0;  // tracks
 };
 

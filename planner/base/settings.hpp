@@ -78,7 +78,7 @@ struct HorizonSettings {
   double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
   double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
   double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
-  double deviation_weight = 0.3;     ///< of the mean distance from undisturbed flight, in the length objective
+  double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
   double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this fraction are not chosen
   double weight_length = 0.6;  ///< modified TOPSIS
   double weight_steering = 0.05;

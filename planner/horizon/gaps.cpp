@@ -49,8 +49,8 @@ double lacking(const std::vector<Blocker>& blockers, const Vec3& place) {
 }
 
 /// Moves a place across the path to where it lacks least.
-Opening refined(const std::vector<Blocker>& blockers, const geometry::PathFrame& frame, const base::Box& volume,
-                Opening place) {
+Gap refined(const std::vector<Blocker>& blockers, const geometry::PathFrame& frame, const base::Box& volume,
+            Gap place) {
   double step = 0.5 * kSpacing;
   for (int n = 0; n < kRefinements && place.lacking > 0.0; step *= 0.5, ++n) {
     for (bool moved = true; moved;) {
@@ -71,33 +71,33 @@ Opening refined(const std::vector<Blocker>& blockers, const geometry::PathFrame&
 
 }  // namespace
 
-std::vector<Opening> openings(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre,
-                              double t, double clearance, std::size_t most) {
+std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
+                           double clearance, std::size_t most) {
   const std::vector<Blocker> now = blockers(request, frame, centre, t, clearance);
   const std::vector<Blocker> later = blockers(request, frame, centre, t + kLater, clearance);
-  std::vector<Opening> places;
+  std::vector<Gap> places;
   for (int aside = -kAside; aside <= kAside; ++aside) {
     for (int above = -kAbove; above <= kAbove; ++above) {
       const Vec3 place = centre + kSpacing * (aside * frame.left + above * frame.up);
       if (request.volume.contains(place)) places.push_back({place, Vec3::Zero(), lacking(now, place)});
     }
   }
-  std::vector<Opening> chosen;
-  const auto before = [&](const Opening& a, const Opening& b) {
+  std::vector<Gap> chosen;
+  const auto before = [&](const Gap& a, const Gap& b) {
     return std::tuple(a.lacking, (a.position - centre).squaredNorm()) <
            std::tuple(b.lacking, (b.position - centre).squaredNorm());
   };
   std::stable_sort(places.begin(), places.end(), before);
-  const auto taken = [&](const Opening& place) {
+  const auto taken = [&](const Gap& place) {
     return std::any_of(chosen.begin(), chosen.end(),
-                       [&](const Opening& other) { return (place.position - other.position).norm() < kOpeningsApart; });
+                       [&](const Gap& other) { return (place.position - other.position).norm() < kGapSpacing; });
   };
-  for (const Opening& place : places) {
+  for (const Gap& place : places) {
     if (chosen.size() == most) break;
     if (taken(place)) continue;
-    Opening opening = refined(now, frame, request.volume, place);
+    Gap opening = refined(now, frame, request.volume, place);
     if (taken(opening)) continue;
-    Opening then = opening;
+    Gap then = opening;
     then.lacking = lacking(later, then.position);
     then = refined(later, frame, request.volume, then);
     opening.velocity = (then.position - opening.position) / kLater;

@@ -10,18 +10,18 @@
 namespace jink::planner::horizon {
 
 /// A place across the path that is clear of the obstacles at some time.
-struct Opening {
+struct Gap {
   Vec3 position = Vec3::Zero();  ///< ENU
   Vec3 velocity = Vec3::Zero();  ///< of the place that stays clear, m/s
   double lacking = 0.0;          ///< of the clearance wanted, m
 };
 
 /// The clearest places at time `t` in the plane through `centre` across the path's axis, in the volume and at least
-/// kOpeningsApart from each other, at most `most`; of those that keep `clearance` (from surface to surface) from
+/// kGapSpacing from each other, at most `most`; of those that keep `clearance` (from surface to surface) from
 /// everything the nearest to `centre` first. O(obstacles).
-std::vector<Opening> openings(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre,
-                              double t, double clearance, std::size_t most);
+std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
+                           double clearance, std::size_t most);
 
-inline constexpr double kOpeningsApart = 1.0;  ///< m
+inline constexpr double kGapSpacing = 1.0;  ///< m
 
 }  // namespace jink::planner::horizon

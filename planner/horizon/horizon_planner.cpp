@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
 constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
-constexpr double kSeedClearance = 0.2;     // m, that manoeuvres aim for beyond the margin: the vehicle cuts corners
+constexpr double kSeedClearance = 0.2;     // m, that initial_paths aim for beyond the margin: the vehicle cuts corners
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
@@ -54,7 +54,7 @@ verify::Verification verify_until(const base::TimedPath& path, const PathRequest
 
 /// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
 /// the verifier's accuracy), then the softer contact.
-bool less_harm(const verify::Verification& a, const verify::Verification& b) {
+bool is_safer(const verify::Verification& a, const verify::Verification& b) {
   if (a.free() != b.free()) return a.free();
   if (a.valid != b.valid) return a.valid;
   if (a.free()) return a.min_clearance > b.min_clearance;
@@ -65,7 +65,7 @@ bool less_harm(const verify::Verification& a, const verify::Verification& b) {
   return a.contact_speed < b.contact_speed;
 }
 
-base::TimedPath undisturbed(const PathProblem& problem) {
+base::TimedPath unobstructed(const PathProblem& problem) {
   return problem.motion(std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0));
 }
 
@@ -91,20 +91,21 @@ void conclude(const PathRequest& request, double horizon, verify::Plan& plan) {
 
 }  // namespace
 
-std::vector<double> start_solutions(const PathProblem& problem, const PathRequest& request,
-                                    const base::TimedPath& previous, const base::HorizonSettings& settings) {
+std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
+                                      const base::TimedPath& previous, const base::HorizonSettings& settings) {
   const auto d = static_cast<std::size_t>(problem.dimension());
   std::vector<double> initial(d, 0.0);
-  const base::TimedPath straight = undisturbed(problem);
+  const base::TimedPath straight = unobstructed(problem);
   const auto add = [&](const base::TimedPath& path) {
     initial.resize(initial.size() + d);
-    problem.imitate(path, {initial.data() + initial.size() - d, d});
+    problem.encode_path(path, {initial.data() + initial.size() - d, d});
   };
   if (!previous.empty()) add(previous);
   if (!settings.seeding) return initial;
   std::vector<double> times;
   for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
-  for (const base::TimedPath& path : manoeuvres(request, straight, times, request.margin + kSeedClearance)) add(path);
+  for (const base::TimedPath& path : initial_paths(request, straight, times, request.margin + kSeedClearance))
+    add(path);
   return initial;
 }
 
@@ -148,7 +149,7 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
     verify::Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
     searches[1] = {harder.schedule, harder.generations};
     plan.evaluations += harder.evaluations;
-    if (less_harm(harder.verification, plan.verification)) {
+    if (is_safer(harder.verification, plan.verification)) {
       harder.evaluations = plan.evaluations;
       harder.emergency = true;
       plan = std::move(harder);
@@ -162,16 +163,16 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
 // Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
 // else to wait for a wall to go away is for ever cheaper than to fly to its hole.
 std::optional<Vec3> HorizonPlanner::around(const PathRequest& request) const {
-  return way_on(request, undisturbed(problem_), problem_.horizon(), request.margin + kSeedClearance);
+  return gap_ahead(request, unobstructed(problem_), problem_.horizon(), request.margin + kSeedClearance);
 }
 
-// No path is shorter than undisturbed flight, none has less of the last objective than nothing: where undisturbed
+// No path is shorter than unobstructed flight, none has less of the last objective than nothing: where unobstructed
 // flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
 // whatever a search found, it is kept.
 std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& request,
                                                            const base::TimedPath& previous) const {
   verify::Plan plan;
-  plan.path = undisturbed(problem_);
+  plan.path = unobstructed(problem_);
   const optimizer::Cost ideal = problem_.cost_of(plan.path);
   const auto settle = [&](verify::Plan& settled) {
     settled.verification = verify_until(settled.path, request, problem_.horizon());
@@ -193,7 +194,7 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& re
 
 verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
                                     const Random& random, const base::Budget& budget, base::WorkerPool& pool) {
-  initial_ = start_solutions(problem, request, previous, settings_);
+  initial_ = initial_solutions(problem, request, previous, settings_);
   base::Budget affordable = budget;
   affordable.generations = affordable_generations(budget);
   const auto begun = std::chrono::steady_clock::now();
@@ -218,7 +219,7 @@ int HorizonPlanner::affordable_generations(const base::Budget& budget) const {
 
 // TOPSIS looks for a compromise between the front's extremes, and a front's far end is no measure of what a detour may
 // cost: what is much longer than need be counts as violating, by how much.
-std::vector<optimizer::Cost> HorizonPlanner::banded(std::span<const optimizer::Cost> costs) const {
+std::vector<optimizer::Cost> HorizonPlanner::quantized(std::span<const optimizer::Cost> costs) const {
   double shortest = base::kInfinity;
   for (const optimizer::Cost& cost : costs) {
     if (cost.violation == 0.0) shortest = std::min(shortest, cost.f[0]);
@@ -235,7 +236,7 @@ verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathReques
   // Of a vehicle that is stuck the plan that gets on is chosen, not the one that turns least: that one waits.
   std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
   if (request.stuck) weights = {1.0, 0.0, 0.0};
-  const std::vector<int> order = optimizer::topsis_order(banded(front.costs), problem.objectives(), weights);
+  const std::vector<int> order = optimizer::topsis_order(quantized(front.costs), problem.objectives(), weights);
   verify::Plan best;
   // True where there is nothing left to look for.
   const auto consider = [&](std::span<const double> x, bool feasible) {
@@ -243,7 +244,7 @@ verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathReques
     plan.path = problem.motion(x);
     plan.verification = verify_until(plan.path, request, problem.horizon());
     const bool good = feasible && plan.verification.free();
-    if (good || best.path.empty() || less_harm(plan.verification, best.verification)) best = std::move(plan);
+    if (good || best.path.empty() || is_safer(plan.verification, best.verification)) best = std::move(plan);
     return good;
   };
   for (std::size_t i = 0; i < std::min(order.size(), kMostVerified); ++i) {
@@ -272,7 +273,7 @@ void HorizonPlanner::keep_previous(const PathRequest& request, const base::Timed
            new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
            (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
   } else if (new_cost.violation > 0.0 || !plan.verification.free()) {
-    keep = less_harm(old.verification, plan.verification);
+    keep = is_safer(old.verification, plan.verification);
   }
   if (!keep) return;
   plan.path = std::move(old.path);

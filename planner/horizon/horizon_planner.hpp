@@ -19,9 +19,9 @@ namespace jink::planner::horizon {
 
 /// Where the search for a plan starts: solutions of `problem`, which is prepared for `request`, one after another.
 /// Straight on; `previous`, where there is one; and, with settings.seeding, what a pilot would try first. Allocates.
-[[nodiscard]] std::vector<double> start_solutions(const PathProblem& problem, const PathRequest& request,
-                                                  const base::TimedPath& previous,
-                                                  const base::HorizonSettings& settings);
+[[nodiscard]] std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
+                                                    const base::TimedPath& previous,
+                                                    const base::HorizonSettings& settings);
 
 /// One planner serves one flight at a time; not thread-safe. plan() is a pure function of its arguments: the same bits
 /// for the same request, previous plan, seed and generations, whatever the number of threads. Where a deadline is
@@ -72,7 +72,7 @@ class HorizonPlanner {
   [[nodiscard]] int affordable_generations(const base::Budget& budget) const;
   [[nodiscard]] verify::Plan choose(const PathProblem& problem, const PathRequest& request,
                                     const optimizer::Front& front) const;
-  [[nodiscard]] std::vector<optimizer::Cost> banded(std::span<const optimizer::Cost> costs) const;
+  [[nodiscard]] std::vector<optimizer::Cost> quantized(std::span<const optimizer::Cost> costs) const;
   void keep_previous(const PathRequest& request, const base::TimedPath& previous, verify::Plan& plan) const;
 
   base::HorizonSettings settings_;

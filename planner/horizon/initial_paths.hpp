@@ -13,21 +13,21 @@
 namespace jink::planner::horizon {
 
 /// Paths from the request's state, one point at each time of `times` (rising, s):
-/// - through the clearest places across the path where the first obstacle is met (openings()), at three times, waiting
+/// - through the clearest places across the path where the first obstacle is met (find_gaps()), at three times, waiting
 ///   before it until then;
-/// - undisturbed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
+/// - unobstructed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
 /// - lanes beside, above and below it, left again towards the end;
-/// - for each of the first obstacles that undisturbed flight meets, the displacements that lead just past it in
+/// - for each of the first obstacles that unobstructed flight meets, the displacements that lead just past it in
 ///   relative motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far
 ///   side, and between them, taken around the time of the encounter; and a stop short of it.
-/// `undisturbed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
+/// `unobstructed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
 /// is to be kept from an obstacle's surface. O(obstacles · points).
-std::vector<base::TimedPath> manoeuvres(const PathRequest& request, const base::TimedPath& undisturbed,
-                                        std::span<const double> times, double clearance);
+std::vector<base::TimedPath> initial_paths(const PathRequest& request, const base::TimedPath& unobstructed,
+                                           std::span<const double> times, double clearance);
 
-/// The opening through which the way leads on, where undisturbed flight is met until `until`: as manoeuvres() looks for
-/// it, at that time. Nothing where no place there keeps `clearance`, or nothing is met.
-std::optional<Vec3> way_on(const PathRequest& request, const base::TimedPath& undisturbed, double until,
-                           double clearance);
+/// The opening through which the way leads on, where unobstructed flight is met until `until`: as initial_paths() looks
+/// for it, at that time. Nothing where no place there keeps `clearance`, or nothing is met.
+std::optional<Vec3> gap_ahead(const PathRequest& request, const base::TimedPath& unobstructed, double until,
+                              double clearance);
 
 }  // namespace jink::planner::horizon

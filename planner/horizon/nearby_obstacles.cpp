@@ -92,8 +92,8 @@ class PathMotion {
 
 }  // namespace
 
-void MetObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
-                         const Clearance& clearance, double step, std::span<const base::Box> where) {
+void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
+                            const Clearance& clearance, double step, std::span<const base::Box> where) {
   groups_.clear();
   found_.clear();
   step_.clear();
@@ -119,8 +119,8 @@ void MetObstacles::build(std::span<const base::Track> tracks, std::span<const ge
 }
 
 template <typename Motion>
-void MetObstacles::add(const Motion& motion, const Clearance& clearance, double step, std::span<const base::Box> where,
-                       const base::Box& everywhere) {
+void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, double step,
+                          std::span<const base::Box> where, const base::Box& everywhere) {
   const double horizon = step * static_cast<double>(where.size());
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + clearance.hard;
@@ -134,7 +134,7 @@ void MetObstacles::add(const Motion& motion, const Clearance& clearance, double 
     const double half = 0.5 * step * static_cast<double>(group.last - group.first);
     const double wanted = hard + clearance.limit + speed * half + most_bend + kSlack;
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
-    MetObstacle obstacle;
+    NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
     for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
       const double end = static_cast<double>(n + 1) * step;

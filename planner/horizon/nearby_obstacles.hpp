@@ -23,7 +23,7 @@ struct Clearance {
 
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
-struct MetObstacle {
+struct NearbyObstacle {
   Vec3 from, to;                  ///< its centre when the step begins and ends
   Vec3 middle;                    ///< halfway
   double hard = 0.0, soft = 0.0;  ///< distances of the centres that are asked for: never less, better not less
@@ -33,7 +33,7 @@ struct MetObstacle {
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
 /// thread-safe while build() runs; keeps its memory from one build to the next.
-class MetObstacles {
+class NearbyObstacles {
  public:
   /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
   /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
@@ -41,7 +41,7 @@ class MetObstacles {
   void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
              const Clearance& clearance, double step, std::span<const base::Box> where);
 
-  [[nodiscard]] std::span<const MetObstacle> during(int step) const {
+  [[nodiscard]] std::span<const NearbyObstacle> during(int step) const {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
   }
@@ -59,9 +59,9 @@ class MetObstacles {
            const base::Box& everywhere);
 
   std::vector<Group> groups_;
-  std::vector<MetObstacle> found_, met_;  // by track, and by step
-  std::vector<std::size_t> step_;         // of each found
-  std::vector<std::size_t> begin_;        // of each step in met_, and the end
+  std::vector<NearbyObstacle> found_, met_;  // by track, and by step
+  std::vector<std::size_t> step_;            // of each found
+  std::vector<std::size_t> begin_;           // of each step in met_, and the end
   std::vector<std::size_t> next_;
   std::size_t obstacles_ = 0;
 };

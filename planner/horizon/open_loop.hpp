@@ -20,7 +20,7 @@ struct OpenLoopRequest {
 };
 
 /// One plan after the other along the path itself, the obstacles extrapolated from t = 0. The shortest path is asked
-/// for: lost time and deviation from undisturbed flight only decide between paths of nearly equal length. A vehicle
+/// for: lost time and deviation from unobstructed flight only decide between paths of nearly equal length. A vehicle
 /// that may wait for nothing can wait too long, so where that path does not arrive a second one is planned with
 /// `settings` as they are, and the better one returned: the one that arrives, then the one that is free, then the one
 /// that comes nearer. `budget` is that of each plan, its deadline that of all.

@@ -75,7 +75,7 @@ template <std::size_t kLanes>
 }
 
 /// A box in plain numbers.
-struct Around {
+struct PlainBox {
   double min_x, min_y, min_z, max_x, max_y, max_z;
 
   [[gnu::always_inline]] static double outside(double low, double high, double value) {
@@ -111,12 +111,12 @@ struct FlightLanes {
     velocity.set(scene.velocity);
   }
 
-  /// ENU offset from undisturbed flight at the leg's end, moved into the volume where it leads out of it.
+  /// ENU offset from unobstructed flight at the leg's end, moved into the volume where it leads out of it.
   [[gnu::always_inline]] void begin_leg(int leg) {
     begin.copy(wished);
     const auto k = static_cast<std::size_t>(leg);
     const Reach reach = scene.reach[k];
-    const Vec3 base = scene.undisturbed[(k + 1) * static_cast<std::size_t>(scene.steps_per_leg)];
+    const Vec3 base = scene.unobstructed[(k + 1) * static_cast<std::size_t>(scene.steps_per_leg)];
     PointLanes<kLanes> asked;
     for (std::size_t i = 0; i < kLanes; ++i) {
       asked.x[i] = x[i][3 * k];
@@ -154,7 +154,7 @@ struct FlightLanes {
   /// Flies the leg's step i, which is the horizon's step `n`.
   [[gnu::always_inline]] void fly(int n, int i) {
     constexpr double kPerCatchUp = 1.0 / kCatchUp;
-    const Vec3 base = scene.undisturbed[static_cast<std::size_t>(n)];
+    const Vec3 base = scene.unobstructed[static_cast<std::size_t>(n)];
     const Vec3 forward = scene.speed[static_cast<std::size_t>(n) + 1] * scene.frame.axis;
     const double since = i * scene.step;
     const Follower follower = scene.follower;
@@ -173,11 +173,11 @@ struct FlightLanes {
 
 /// What paths cost, step by step.
 template <std::size_t kLanes>
-struct MeterLanes {
+struct CostLanes {
   static constexpr std::size_t kStretch = 10;  ///< steps looked at together for what few paths meet
 
   const PathScene& scene;
-  const MetObstacles& obstacles;
+  const NearbyObstacles& obstacles;
   std::size_t count = 0;                                ///< steps in the stretch
   std::array<PointLanes<kLanes>, kStretch + 1> places;  ///< where it begins, and after each of its steps
   std::array<Lanes<kLanes>, kStretch> moved;            ///< in each of its steps
@@ -185,8 +185,8 @@ struct MeterLanes {
   PointLanes<kLanes> corner, direction;                 ///< the last leg's end and way
   Lanes<kLanes> length, deviation, arrival, steering, dip, violation;
 
-  [[gnu::always_inline]] MeterLanes(const PathScene& scene_, const MetObstacles& obstacles_,
-                                    const PointLanes<kLanes>& start)
+  [[gnu::always_inline]] CostLanes(const PathScene& scene_, const NearbyObstacles& obstacles_,
+                                   const PointLanes<kLanes>& start)
       : scene(scene_), obstacles(obstacles_) {
     places[0].copy(start);
     least.copy(start);
@@ -198,7 +198,7 @@ struct MeterLanes {
   /// Step n, in which the vehicles fly evenly from where they were to `to`.
   [[gnu::always_inline]] void add(int n, const PointLanes<kLanes>& to) {
     if (count == kStretch) restart();
-    const Vec3 base = scene.undisturbed[static_cast<std::size_t>(n) + 1];
+    const Vec3 base = scene.unobstructed[static_cast<std::size_t>(n) + 1];
     PointLanes<kLanes> from;
     from.copy(places[count]);
     Lanes<kLanes> way;
@@ -230,13 +230,13 @@ struct MeterLanes {
 
   /// Ends a stretch of which n is the last step.
   [[gnu::always_inline]] void settle(int n) {
-    const Around around{smallest(least.x), smallest(least.y), smallest(least.z),
-                        largest(most.x),   largest(most.y),   largest(most.z)};
+    const PlainBox bounds{smallest(least.x), smallest(least.y), smallest(least.z),
+                          largest(most.x),   largest(most.y),   largest(most.z)};
     const int before = n - static_cast<int>(count);
-    if (!around.inside(scene.volume)) {
+    if (!bounds.inside(scene.volume)) {
       for (std::size_t j = 1; j <= count; ++j) add_outside(places[j]);
     }
-    if (around.squared_distance(scene.target) > kNear * kNear) {
+    if (bounds.squared_distance(scene.target) > kNear * kNear) {
       for (std::size_t i = 0; i < kLanes; ++i) arrival[i] = (n + 1) * scene.step;
     } else {
       for (std::size_t j = 1; j <= count; ++j) add_time((before + static_cast<int>(j) + 1) * scene.step, places[j]);
@@ -244,8 +244,8 @@ struct MeterLanes {
     for (std::size_t j = 0; j < count; ++j) {
       const int step = before + static_cast<int>(j) + 1;
       const double weight = scene.step / (0.5 + step * scene.step);  // what is near in time counts more
-      for (const MetObstacle& obstacle : obstacles.during(step)) {
-        if (around.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;
+      for (const NearbyObstacle& obstacle : obstacles.during(step)) {
+        if (bounds.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;
         if (may_meet(obstacle, j)) add_obstacle(obstacle, places[j], places[j + 1], weight);
       }
     }
@@ -272,16 +272,16 @@ struct MeterLanes {
   [[gnu::always_inline]] void add_outside(const PointLanes<kLanes>& to) {
     const base::Box& volume = scene.volume;
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const double x = Around::outside(volume.min.x(), volume.max.x(), to.x[i]);
-      const double y = Around::outside(volume.min.y(), volume.max.y(), to.y[i]);
-      const double z = Around::outside(volume.min.z(), volume.max.z(), to.z[i]);
+      const double x = PlainBox::outside(volume.min.x(), volume.max.x(), to.x[i]);
+      const double y = PlainBox::outside(volume.min.y(), volume.max.y(), to.y[i]);
+      const double z = PlainBox::outside(volume.min.z(), volume.max.z(), to.z[i]);
       violation[i] += std::sqrt(x * x + y * y + z * z) * scene.step;
     }
   }
 
   /// False only where every lane keeps the soft distance in the stretch's step j. Relative motion is straight, so
   /// during the step the distance is not below that of the middles by more than half of both ways.
-  [[gnu::always_inline]] [[nodiscard]] bool may_meet(const MetObstacle& obstacle, std::size_t j) const {
+  [[gnu::always_inline]] [[nodiscard]] bool may_meet(const NearbyObstacle& obstacle, std::size_t j) const {
     const PointLanes<kLanes>& from = places[j];
     const PointLanes<kLanes>& to = places[j + 1];
     const Lanes<kLanes>& way = moved[j];
@@ -299,7 +299,7 @@ struct MeterLanes {
   }
 
   /// The swept test of geometry.hpp in every lane.
-  [[gnu::always_inline]] void add_obstacle(const MetObstacle& obstacle, const PointLanes<kLanes>& from,
+  [[gnu::always_inline]] void add_obstacle(const NearbyObstacle& obstacle, const PointLanes<kLanes>& from,
                                            const PointLanes<kLanes>& to, double weight) {
     const Vec3 c = obstacle.from;
     const Vec3 d = obstacle.to;
@@ -401,7 +401,7 @@ struct MeterLanes {
     }
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double then = arrival[i] == horizon ? rest[i] / scene.cruise : 0.0;
-      const double late = arrival[i] + then - scene.undisturbed_time;
+      const double late = arrival[i] + then - scene.unobstructed_time;
       const double lost = late > 0.0 ? late : 0.0;
       total[i] = length[i] + rest[i] + scene.time_weight * scene.cruise * lost +
                  scene.deviation_weight * deviation[i] / scene.steps;

@@ -43,9 +43,9 @@ PathProblem::PathProblem(const base::HorizonSettings& settings)
   scene_.step = settings.step;
   scene_.deviation_weight = settings.deviation_weight;
   scene_.reach.resize(index(settings.waypoints));
-  scene_.undisturbed.resize(index(scene_.steps + 1));
+  scene_.unobstructed.resize(index(scene_.steps + 1));
   scene_.speed.resize(index(scene_.steps + 1));
-  undisturbed_.resize(index(scene_.steps + 1));
+  unobstructed_.resize(index(scene_.steps + 1));
   where_.resize(index(scene_.steps));
 }
 
@@ -62,12 +62,12 @@ void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>&
   scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,
                      1.0 / (acceleration * settings_.step)};
   scene_.inverse_braking = 1.0 / (2.0 * acceleration);
-  undisturbed_flight();
+  unobstructed_flight();
   predict_obstacles();
 }
 
 // Along the straight line: up to cruise speed, and braking for the target.
-void PathProblem::undisturbed_flight() {
+void PathProblem::unobstructed_flight() {
   const base::VehicleLimits& vehicle = request_.vehicle;
   const geometry::PathFrame& frame = scene_.frame;
   const double climb_share = std::abs(frame.axis.z());
@@ -77,7 +77,7 @@ void PathProblem::undisturbed_flight() {
   double distance = 0.0;
   double speed = std::clamp(request_.velocity.dot(frame.axis), 0.0, vehicle.max_speed);
   double time = 0.0;
-  scene_.undisturbed[0] = frame.origin;
+  scene_.unobstructed[0] = frame.origin;
   for (int step = 1; step <= scene_.steps; ++step) {
     const double left = frame.length - distance;
     const double wish = std::min({cruise, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
@@ -85,16 +85,16 @@ void PathProblem::undisturbed_flight() {
     distance = std::min(frame.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
     if (frame.length - distance > kNear) time = step * settings_.step;
-    undisturbed_[index(step)] = distance;
-    scene_.undisturbed[index(step)] = frame.origin + distance * frame.axis;
+    unobstructed_[index(step)] = distance;
+    scene_.unobstructed[index(step)] = frame.origin + distance * frame.axis;
     scene_.speed[index(step)] = speed;
   }
   scene_.cruise = cruise;
-  scene_.undisturbed_time = time + (frame.length - distance) / cruise;
+  scene_.unobstructed_time = time + (frame.length - distance) / cruise;
   for (int k = 0; k < settings_.waypoints; ++k) {
     const int step = (k + 1) * scene_.steps_per_leg;
     const double t = step * settings_.step;
-    const double along = undisturbed_[index(step)];
+    const double along = unobstructed_[index(step)];
     scene_.reach[index(k)] = {std::max(kArrival, std::min(frame.length, vehicle.max_speed * t) - along),
                               along + std::min(settings_.back_range, vehicle.max_speed * t),
                               std::min(settings_.lateral_range, vehicle.max_speed * t)};
@@ -140,7 +140,7 @@ template <std::size_t kLanes>
     results[i] = i < costs.size() ? &costs[i] : nullptr;
   }
   FlightLanes<kLanes> flight(scene_, variables);
-  MeterLanes<kLanes> meter(scene_, obstacles_, flight.position);
+  CostLanes<kLanes> meter(scene_, obstacles_, flight.position);
   int n = 0;
   for (int leg = 0; leg < scene_.waypoints; ++leg) {
     flight.begin_leg(leg);
@@ -234,11 +234,11 @@ optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {
   for (std::size_t n = 0; n < where.size(); ++n) {
     where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
   }
-  MetObstacles obstacles;
+  NearbyObstacles obstacles;
   obstacles.build(request_.tracks, request_.paths, clearance(), settings_.step, where);
   PointLanes<1> position;
   position.set(positions[0]);
-  MeterLanes<1> meter(scene_, obstacles, position);
+  CostLanes<1> meter(scene_, obstacles, position);
   for (int n = 0; n < scene_.steps; ++n) {
     position.set(positions[index(n + 1)]);
     meter.add(n, position);
@@ -249,12 +249,12 @@ optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {
   return cost;
 }
 
-void PathProblem::imitate(const base::TimedPath& path, std::span<double> x) const {
+void PathProblem::encode_path(const base::TimedPath& path, std::span<double> x) const {
   for (int k = 0; k < settings_.waypoints; ++k) {
     const std::size_t i = index(k);
     const int step = (k + 1) * scene_.steps_per_leg;
     const Vec3 q = scene_.frame.from_enu(base::sample(path, step * settings_.step).position);
-    const double along = q.x() - undisturbed_[index(step)];
+    const double along = q.x() - unobstructed_[index(step)];
     x[3 * i] = std::clamp(along / (along > 0.0 ? scene_.reach[i].ahead : scene_.reach[i].behind), -1.0, 1.0);
     x[3 * i + 1] = std::clamp(q.y() / scene_.reach[i].aside, -1.0, 1.0);
     x[3 * i + 2] = std::clamp(q.z() / scene_.reach[i].aside, -1.0, 1.0);

@@ -32,23 +32,23 @@ struct PathRequest {
 };
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
-/// undisturbed flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's axis
-/// (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The vehicle
-/// follows with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at every
-/// instant; with all of them 0 it is undisturbed flight.
+/// unobstructed flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's
+/// axis (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The
+/// vehicle follows with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at
+/// every instant; with all of them 0 it is unobstructed flight.
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
-/// undisturbed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths the
-/// one at cruise speed wins. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and
-/// how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same for the hard
-/// margin, and for leaving the volume.
+/// unobstructed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths
+/// the one at cruise speed wins. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long
+/// and how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same for the
+/// hard margin, and for leaving the volume.
 class PathProblem final : public optimizer::Problem {
  public:
   /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.
   explicit PathProblem(const base::HorizonSettings& settings);
 
-  /// Prepares a plan: the frame, undisturbed flight, and for every step of the horizon the obstacles that can be met in
-  /// it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
+  /// Prepares a plan: the frame, unobstructed flight, and for every step of the horizon the obstacles that can be met
+  /// in it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
   /// With `via` the way on from a horizon that ends short of that place, along the axis, leads over it, straight on
   /// being closed, and lost time counts kHurry times: what is put off costs next to nothing otherwise. O(tracks + near
   /// tracks · steps); no allocation once it has seen as many obstacles.
@@ -69,7 +69,7 @@ class PathProblem final : public optimizer::Problem {
   [[nodiscard]] optimizer::Cost cost_of(const base::TimedPath& path) const;
 
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
-  void imitate(const base::TimedPath& path, std::span<double> x) const;
+  void encode_path(const base::TimedPath& path, std::span<double> x) const;
 
   [[nodiscard]] int steps() const { return scene_.steps; }
   [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
@@ -83,7 +83,7 @@ class PathProblem final : public optimizer::Problem {
   [[nodiscard]] double most_acceleration() const {
     return settings_.planned_acceleration(request_.vehicle.max_acceleration);
   }
-  void undisturbed_flight();
+  void unobstructed_flight();
   void predict_obstacles();
   [[nodiscard]] Clearance clearance() const;
   void fly_to_target(base::TimedPath& path, base::TimedPoint flight) const;
@@ -96,10 +96,10 @@ class PathProblem final : public optimizer::Problem {
   base::HorizonSettings settings_;
   PathRequest request_;
   PathScene scene_;
-  MetObstacles obstacles_;
+  NearbyObstacles obstacles_;
   std::vector<double> lower_, upper_;
-  std::vector<double> undisturbed_;  // distance along the axis after each step
-  std::vector<base::Box> where_;     // the vehicle can be during each step
+  std::vector<double> unobstructed_;  // distance along the axis after each step
+  std::vector<base::Box> where_;      // the vehicle can be during each step
 };
 
 }  // namespace jink::planner::horizon

@@ -65,12 +65,12 @@ struct PathScene {
   base::Box volume;
   geometry::PathFrame frame;
   Follower follower;
-  std::vector<Reach> reach;       ///< of each waypoint
-  std::vector<Vec3> undisturbed;  ///< position after each step, the start first
-  std::vector<double> speed;      ///< along the axis, likewise
-  double cruise = 0.0;            ///< along the axis, the climb limit considered
-  double undisturbed_time = 0.0;  ///< to the target
-  double inverse_braking = 0.0;   ///< 1 / (2 · planned acceleration): times speed² the way to a stop
+  std::vector<Reach> reach;        ///< of each waypoint
+  std::vector<Vec3> unobstructed;  ///< position after each step, the start first
+  std::vector<double> speed;       ///< along the axis, likewise
+  double cruise = 0.0;             ///< along the axis, the climb limit considered
+  double unobstructed_time = 0.0;  ///< to the target
+  double inverse_braking = 0.0;    ///< 1 / (2 · planned acceleration): times speed² the way to a stop
   double time_weight = 0.0;
   double deviation_weight = 0.0;
 };

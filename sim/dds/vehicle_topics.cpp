@@ -92,7 +92,7 @@ WirePosition position_of(const vehicle::Autopilot& autopilot, const EstimateJump
 
 }  // namespace
 
-const EstimateJumps& JumpWatch::update(std::uint8_t counter, const vehicle::Motion& estimated, double dt) {
+const EstimateJumps& EstimateJumpDetector::update(std::uint8_t counter, const vehicle::Motion& estimated, double dt) {
   if (position_ && counter != jumps_.horizontal) {
     jumps_.newest = estimated.position - *position_ - dt * estimated.velocity;
   }
@@ -101,9 +101,9 @@ const EstimateJumps& JumpWatch::update(std::uint8_t counter, const vehicle::Moti
   return jumps_;
 }
 
-class SimDds::Impl {
+class VehicleTopics::Impl {
  public:
-  Impl(bridge::dds::DdsNode& node, const std::string& name_space)
+  Impl(bridge::dds::DdsParticipant& node, const std::string& name_space)
       : positions_(node, bridge::dds::px4_topic(name_space, bridge::dds::kLocalPositionTopicV1),
                    bridge::dds::kLocalPositionType, {.transient_local = true}),
         setpoint_reader_(node, bridge::dds::px4_topic(name_space, bridge::dds::kTrajectorySetpointTopic),
@@ -180,19 +180,19 @@ class SimDds::Impl {
   bridge::dds::PayloadReader mode_reader_;
 };
 
-SimDds::SimDds(bridge::dds::DdsNode& node, const std::string& name_space)
+VehicleTopics::VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space)
     : impl_(std::make_unique<Impl>(node, name_space)) {}
-SimDds::~SimDds() = default;
-void SimDds::step(double now, vehicle::Autopilot& autopilot, const EstimateJumps& jumps) {
+VehicleTopics::~VehicleTopics() = default;
+void VehicleTopics::step(double now, vehicle::Autopilot& autopilot, const EstimateJumps& jumps) {
   impl_->step(now, autopilot, jumps);
 }
-int SimDds::readers() const {
+int VehicleTopics::readers() const {
   return impl_->readers();
 }
-std::uint64_t SimDds::setpoints() const {
+std::uint64_t VehicleTopics::setpoints() const {
   return impl_->setpoints();
 }
-std::uint64_t SimDds::malformed() const {
+std::uint64_t VehicleTopics::malformed() const {
   return impl_->malformed();
 }
 

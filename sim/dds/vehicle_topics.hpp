@@ -21,7 +21,7 @@ struct EstimateJumps {
 
 /// Tells the jumps from an estimator's reset counter, which says when, and its motion, which says how far. Not
 /// thread-safe.
-class JumpWatch {
+class EstimateJumpDetector {
  public:
   /// `counter` goes up by one, and around, with each jump; `estimated` is the motion `dt` s after the one before. What
   /// the position moved beyond its velocity is the jump.
@@ -37,16 +37,16 @@ class JumpWatch {
 /// renews the newest setpoint, and setpoints without a mode in the last kModeTimeout_s are left alone. Of the modes
 /// that ask for position, velocity or acceleration, the first that is set counts; others are refused with a status
 /// text. Not thread-safe.
-class SimDds {
+class VehicleTopics {
  public:
   static constexpr double kPositionRate_hz = 100.0;
   static constexpr double kModeTimeout_s = 0.5;  ///< PX4 asks for more than 2 Hz
 
   /// `name_space` as of the agent: "px4_1". `node` must outlive it. @throws std::runtime_error, one line.
-  SimDds(bridge::dds::DdsNode& node, const std::string& name_space = {});
-  ~SimDds();
-  SimDds(const SimDds&) = delete;
-  SimDds& operator=(const SimDds&) = delete;
+  VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space = {});
+  ~VehicleTopics();
+  VehicleTopics(const VehicleTopics&) = delete;
+  VehicleTopics& operator=(const VehicleTopics&) = delete;
 
   /// Hands what has come to the autopilot, and publishes when it is time. `now`: simulated seconds, not decreasing.
   void step(double now, vehicle::Autopilot& autopilot, const EstimateJumps& jumps = {});

@@ -197,11 +197,11 @@ bool hits_straight(const world::World& world) {
   for (const config::ScenarioVehicle& vehicle : team)
     missions.emplace_back(vehicle.start, vehicle.target, vehicle.vehicle);
   const auto way = [&](std::size_t k, double t) {
-    return world::SphereWay{missions[k].at(missions[k].along(t)), missions[k].at(missions[k].along(t + kStep)),
-                            team[k].vehicle.radius};
+    return world::SphereSegment{missions[k].at(missions[k].along(t)), missions[k].at(missions[k].along(t + kStep)),
+                                team[k].vehicle.radius};
   };
   for (double t = 0.0; t < missions.front().duration(); t += kStep) {
-    const world::SphereWay own = way(0, t);
+    const world::SphereSegment own = way(0, t);
     if (hit(world.sweep(own.from, t, own.to, t + kStep))) return true;
     for (std::size_t k = 1; k < team.size(); ++k) {
       if (hit(sweep(own, way(k, t), t, t + kStep))) return true;

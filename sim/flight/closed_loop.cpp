@@ -194,7 +194,7 @@ class Flight {
   const ClosedLoopOptions& options_;
   faults::FaultTimeline timeline_;
   TeamLink intents_;
-  FlightJudge judge_;
+  ClosedLoopJudge judge_;
   std::vector<std::unique_ptr<Member>> members_;  // a link refers to its autopilot, which must not move
   int steps_per_turn_;
 };
@@ -204,7 +204,7 @@ class Flight {
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options) {
   const world::World world(scenario);
-  if (std::optional<ClosedLoopResult> blocked = FlightJudge(world).start_blocked()) return *std::move(blocked);
+  if (std::optional<ClosedLoopResult> blocked = ClosedLoopJudge(world).start_blocked()) return *std::move(blocked);
   return Flight(world, settings, options).fly();
 }
 

@@ -32,7 +32,7 @@ void sum_up(bridge::supervisor::Outcome outcome, ClosedLoopResult& result) {
 
 }  // namespace
 
-FlightJudge::FlightJudge(const world::World& world)
+ClosedLoopJudge::ClosedLoopJudge(const world::World& world)
     : world_(world),
       vehicles_(config::all_vehicles(world.scenario())),
       reports_(vehicles_.size()),
@@ -43,7 +43,7 @@ FlightJudge::FlightJudge(const world::World& world)
   }
 }
 
-std::optional<ClosedLoopResult> FlightJudge::start_blocked() const {
+std::optional<ClosedLoopResult> ClosedLoopJudge::start_blocked() const {
   ClosedLoopResult result;
   result.vehicles = reports_;
   for (std::size_t k = 0; k < vehicles_.size(); ++k) {
@@ -69,7 +69,7 @@ std::optional<ClosedLoopResult> FlightJudge::start_blocked() const {
   return result;
 }
 
-bool FlightJudge::watch(double t, std::span<const world::VehicleTruth> now) {
+bool ClosedLoopJudge::watch(double t, std::span<const world::VehicleTruth> now) {
   assert(now.size() == vehicles_.size());
   for (std::size_t k = 0; k < now.size(); ++k) {
     watch_obstacles(k, t, now[k].position);
@@ -90,7 +90,7 @@ bool FlightJudge::watch(double t, std::span<const world::VehicleTruth> now) {
   return ended();
 }
 
-void FlightJudge::watch_obstacles(std::size_t k, double t, const Vec3& to) {
+void ClosedLoopJudge::watch_obstacles(std::size_t k, double t, const Vec3& to) {
   const world::SweepResult nearest = world_.sweep(last_[k], last_t_, to, t, vehicles_[k].vehicle.radius);
   reports_[k].min_clearance = std::min(reports_[k].min_clearance, nearest.min_clearance);
   if (nearest.min_clearance >= 0.0) return;
@@ -98,7 +98,7 @@ void FlightJudge::watch_obstacles(std::size_t k, double t, const Vec3& to) {
        "hit obstacle " + std::to_string(world::World::id(nearest.obstacle)) + at_time(nearest.t_min));
 }
 
-void FlightJudge::watch_pair(std::size_t a, std::size_t b, double t, std::span<const world::VehicleTruth> now) {
+void ClosedLoopJudge::watch_pair(std::size_t a, std::size_t b, double t, std::span<const world::VehicleTruth> now) {
   const world::SweepResult nearest = world::sweep({last_[a], now[a].position, vehicles_[a].vehicle.radius},
                                                   {last_[b], now[b].position, vehicles_[b].vehicle.radius}, last_t_, t);
   for (const auto& [k, other] : {std::pair(a, b), std::pair(b, a)}) {
@@ -108,20 +108,20 @@ void FlightJudge::watch_pair(std::size_t a, std::size_t b, double t, std::span<c
   }
 }
 
-void FlightJudge::fail(std::size_t k, bridge::supervisor::Outcome outcome, const std::string& reason) {
+void ClosedLoopJudge::fail(std::size_t k, bridge::supervisor::Outcome outcome, const std::string& reason) {
   bridge::companion::FlightSummary& flight = reports_[k].flight;
   if (flight.outcome != bridge::supervisor::Outcome::kNone) return;
   flight.outcome = outcome;
   flight.reason = reason;
 }
 
-bool FlightJudge::ended() const {
+bool ClosedLoopJudge::ended() const {
   return std::any_of(reports_.begin(), reports_.end(), [](const VehicleReport& report) {
     return report.flight.outcome != bridge::supervisor::Outcome::kNone;
   });
 }
 
-ClosedLoopResult FlightJudge::result(std::vector<bridge::companion::FlightSummary> seen) const {
+ClosedLoopResult ClosedLoopJudge::result(std::vector<bridge::companion::FlightSummary> seen) const {
   ClosedLoopResult result;
   result.vehicles = reports_;
   for (std::size_t k = 0; k < reports_.size(); ++k) {

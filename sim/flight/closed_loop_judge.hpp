@@ -17,10 +17,10 @@
 namespace jink::sim::flight {
 
 /// Vehicles go straight between two steps; contacts are found in continuous time. Not thread-safe.
-class FlightJudge {
+class ClosedLoopJudge {
  public:
   /// The world outlives it.
-  explicit FlightJudge(const world::World& world);
+  explicit ClosedLoopJudge(const world::World& world);
 
   /// The result of a flight that cannot begin, as a vehicle overlaps an obstacle or another one at its start.
   [[nodiscard]] std::optional<ClosedLoopResult> start_blocked() const;

@@ -29,7 +29,7 @@ Simulator::Simulator(const config::Scenario& scenario, const SimulatorOptions& o
   if (options_.vehicles) add_vehicles(config::all_vehicles(scenario));
   const auto& faults = scenario.faults;
   if (vehicles_.empty() && std::any_of(faults.begin(), faults.end(), [](const auto& f) { return f.of_vehicle(); }))
-    say("fault", "no vehicle here: the faults that befall one have no effect");
+    emit_event("fault", "no vehicle here: the faults that befall one have no effect");
   if (vehicles_.empty() || options_.immediate_clock) start_clock();
 }
 
@@ -97,7 +97,8 @@ int Simulator::give_up() {
     if (!vehicles_[k].owes_setpoint() || vehicles_[k].given_up) continue;
     vehicles_[k].given_up = true;
     ++count;
-    say("lockstep", named(static_cast<int>(k), "no setpoint from the companion: not waited for until one comes"));
+    emit_event("lockstep",
+               named(static_cast<int>(k), "no setpoint from the companion: not waited for until one comes"));
   }
   return count;
 }
@@ -116,13 +117,13 @@ std::string Simulator::named(int vehicle, const std::string& text) const {
   return vehicles_.size() > 1 ? "vehicle " + std::to_string(vehicle) + ": " + text : text;
 }
 
-void Simulator::say(std::string_view name, const std::string& text) {
+void Simulator::emit_event(std::string_view name, const std::string& text) {
   for (SimulatorObserver* observer : parts_.observers) observer->on_event(scenario_time(), name, text);
 }
 
 void Simulator::start_clock() {
   clock_start_ = now_;
-  say("clock", "the scenario's clock runs, " + std::to_string(world_.obstacle_count()) + " obstacles move");
+  emit_event("clock", "the scenario's clock runs, " + std::to_string(world_.obstacle_count()) + " obstacles move");
 }
 
 void Simulator::watch_clock() {
@@ -136,8 +137,8 @@ void Simulator::watch_clock() {
     if (!vehicle.away_from) vehicle.away_from = now_;
     if (now_ - *vehicle.away_from < kPatience) continue;
     vehicle.away_said = true;
-    say("clock", named(static_cast<int>(k),
-                       "flies, but has not been within 0.5 m of its start: until then all obstacles stand"));
+    emit_event("clock", named(static_cast<int>(k),
+                              "flies, but has not been within 0.5 m of its start: until then all obstacles stand"));
   }
   if (std::all_of(vehicles_.begin(), vehicles_.end(), [](const Vehicle& v) { return v.was_at_start; })) start_clock();
 }
@@ -145,7 +146,7 @@ void Simulator::watch_clock() {
 void Simulator::watch_faults() {
   const std::vector<faults::FaultChange> changes = timeline_.advance(scenario_time());
   for (const faults::FaultChange& change : changes) {
-    say("fault", "fault: " + timeline_.describe(change));
+    emit_event("fault", "fault: " + timeline_.describe(change));
     for (std::size_t k = 0; k < vehicles_.size(); ++k)
       faults::apply(timeline_, change, static_cast<int>(k), vehicles_[k].autopilot);
   }
@@ -166,13 +167,13 @@ void Simulator::judge() {
     switch (verdict.outcome) {
       case bridge::supervisor::Outcome::kCollision:
         vehicles_[static_cast<std::size_t>(verdict.vehicle)].autopilot.crash();
-        say("collision", "COLLISION: " + text + "; the motors stop");
+        emit_event("collision", "COLLISION: " + text + "; the motors stop");
         break;
       case bridge::supervisor::Outcome::kLeftWorld:
-        say("left_world", "LEFT THE WORLD: " + text);
+        emit_event("left_world", "LEFT THE WORLD: " + text);
         break;
       default:
-        say("reached", text);
+        emit_event("reached", text);
         break;
     }
   }
@@ -186,7 +187,7 @@ void Simulator::publish() {
   while (sensing_.poll(now_, message)) {
     if (!track_faults_.apply(timeline_, world_, truth(), message)) continue;
     if (parts_.publish && !parts_.publish(message, now_)) {
-      say("publish_failed", "a track message could not be published");
+      emit_event("publish_failed", "a track message could not be published");
     }
   }
 }

@@ -104,7 +104,7 @@ class Simulator {
   [[nodiscard]] std::vector<Vec3> positions() const;
   [[nodiscard]] std::vector<world::VehicleTruth> truth() const;
   [[nodiscard]] std::string named(int vehicle, const std::string& text) const;
-  void say(std::string_view name, const std::string& text);
+  void emit_event(std::string_view name, const std::string& text);
   void add_vehicles(const std::vector<config::ScenarioVehicle>& specs);
   void start_clock();
   void watch_clock();
@@ -120,7 +120,7 @@ class Simulator {
   faults::FaultTimeline timeline_;
   faults::TrackFaults track_faults_;
   std::vector<Vehicle> vehicles_;
-  std::optional<Judge> judge_;
+  std::optional<SimulatorJudge> judge_;
   std::optional<double> clock_start_;
   std::int64_t steps_ = 0;
   double now_ = 0.0;

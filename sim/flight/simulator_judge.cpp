@@ -38,7 +38,8 @@ bridge::supervisor::Outcome worst(std::span<const VehicleReport> reports) {
   return found == reports.end() ? bridge::supervisor::Outcome::kNone : found->flight.outcome;
 }
 
-Judge::Judge(const world::World& world, std::vector<config::ScenarioVehicle> vehicles, std::span<const Vec3> positions)
+SimulatorJudge::SimulatorJudge(const world::World& world, std::vector<config::ScenarioVehicle> vehicles,
+                               std::span<const Vec3> positions)
     : world_(world),
       vehicles_(std::move(vehicles)),
       last_(positions.begin(), positions.end()),
@@ -49,7 +50,7 @@ Judge::Judge(const world::World& world, std::vector<config::ScenarioVehicle> veh
   }
 }
 
-std::vector<Verdict> Judge::watch(double t, bool clock_runs, std::span<const JudgedVehicle> now) {
+std::vector<Verdict> SimulatorJudge::watch(double t, bool clock_runs, std::span<const JudgedVehicle> now) {
   assert(now.size() == vehicles_.size());
   std::vector<Verdict> verdicts;
   judge_collisions(t, now, verdicts);
@@ -61,14 +62,14 @@ std::vector<Verdict> Judge::watch(double t, bool clock_runs, std::span<const Jud
   return verdicts;
 }
 
-void Judge::judge_collisions(double t, std::span<const JudgedVehicle> now, std::vector<Verdict>& verdicts) {
+void SimulatorJudge::judge_collisions(double t, std::span<const JudgedVehicle> now, std::vector<Verdict>& verdicts) {
   for (std::size_t k = 0; k < now.size(); ++k) judge_obstacles(k, t, now[k].position, verdicts);
   for (std::size_t a = 0; a < now.size(); ++a) {
     for (std::size_t b = a + 1; b < now.size(); ++b) judge_pair(a, b, t, now, verdicts);
   }
 }
 
-void Judge::judge_obstacles(std::size_t k, double t, const Vec3& to, std::vector<Verdict>& verdicts) {
+void SimulatorJudge::judge_obstacles(std::size_t k, double t, const Vec3& to, std::vector<Verdict>& verdicts) {
   if (reports_[k].failed()) return;
   const world::SweepResult sweep = world_.sweep(last_[k], last_t_, to, t, vehicles_[k].vehicle.radius);
   reports_[k].min_clearance = std::min(reports_[k].min_clearance, sweep.min_clearance);
@@ -77,8 +78,8 @@ void Judge::judge_obstacles(std::size_t k, double t, const Vec3& to, std::vector
 }
 
 // One that has failed falls or flies on, and can still be hit by another.
-void Judge::judge_pair(std::size_t a, std::size_t b, double t, std::span<const JudgedVehicle> now,
-                       std::vector<Verdict>& verdicts) {
+void SimulatorJudge::judge_pair(std::size_t a, std::size_t b, double t, std::span<const JudgedVehicle> now,
+                                std::vector<Verdict>& verdicts) {
   if (reports_[a].failed() && reports_[b].failed()) return;
   const world::SweepResult nearest = world::sweep({last_[a], now[a].position, vehicles_[a].vehicle.radius},
                                                   {last_[b], now[b].position, vehicles_[b].vehicle.radius}, last_t_, t);
@@ -89,7 +90,7 @@ void Judge::judge_pair(std::size_t a, std::size_t b, double t, std::span<const J
   }
 }
 
-void Judge::judge_progress(std::size_t k, double t, const JudgedVehicle& now, std::vector<Verdict>& verdicts) {
+void SimulatorJudge::judge_progress(std::size_t k, double t, const JudgedVehicle& now, std::vector<Verdict>& verdicts) {
   bridge::companion::FlightSummary& flight = reports_[k].flight;
   if (flight.outcome != bridge::supervisor::Outcome::kNone) return;
   flight.flight_time = t;
@@ -102,12 +103,12 @@ void Judge::judge_progress(std::size_t k, double t, const JudgedVehicle& now, st
   }
 }
 
-void Judge::hit(std::size_t k, const std::string& what, double t, std::vector<Verdict>& verdicts) {
+void SimulatorJudge::hit(std::size_t k, const std::string& what, double t, std::vector<Verdict>& verdicts) {
   decide(k, bridge::supervisor::Outcome::kCollision, "hit " + what + at_time(t), verdicts);
 }
 
-void Judge::decide(std::size_t k, bridge::supervisor::Outcome outcome, std::string reason,
-                   std::vector<Verdict>& verdicts) {
+void SimulatorJudge::decide(std::size_t k, bridge::supervisor::Outcome outcome, std::string reason,
+                            std::vector<Verdict>& verdicts) {
   reports_[k].flight.outcome = outcome;
   reports_[k].flight.reason = reason;
   verdicts.push_back({static_cast<int>(k), outcome, std::move(reason)});

@@ -39,12 +39,13 @@ struct VehicleReport {
 };
 
 /// Judges from step to step, in continuous time: vehicles go straight between two steps. Not thread-safe.
-class Judge {
+class SimulatorJudge {
  public:
   static constexpr double kAtTarget = 0.5;  ///< m, from the target: reached
 
   /// `vehicles` begin at `positions`, one each. The world outlives the judge.
-  Judge(const world::World& world, std::vector<config::ScenarioVehicle> vehicles, std::span<const Vec3> positions);
+  SimulatorJudge(const world::World& world, std::vector<config::ScenarioVehicle> vehicles,
+                 std::span<const Vec3> positions);
 
   /// The motion up to scenario time `t`, which stands while the clock does not run. Each vehicle is told of once: hit
   /// (obstacle or vehicle, also after it reached its target), left, or reached. Only hits count while the clock stands.

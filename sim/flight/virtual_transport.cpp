@@ -220,11 +220,11 @@ bool VirtualTracks::poll(bridge::tracking::TrackMessage& message) {
 // As a reader behind a real transport does it.
 void VirtualTracks::accept(const world::TrackMessage& measured, bridge::tracking::TrackMessage& message) {
   message = {1, now_, now_ - measured.stamp - measured.clock_offset, {}, 0};
-  bridge::tracking::TrackSieve sieve(message, measured.tracks.size());
-  for (const planner::base::Track& track : measured.tracks) sieve.add(track);
+  bridge::tracking::TrackValidator validator(message, measured.tracks.size());
+  for (const planner::base::Track& track : measured.tracks) validator.add(track);
   ++status_.messages;
   status_.dropped_tracks += message.dropped;
-  if (const std::string why = sieve.why(); !why.empty()) status_.last_refusal = why;
+  if (const std::string why = validator.why(); !why.empty()) status_.last_refusal = why;
 }
 
 }  // namespace jink::sim::flight

@@ -76,7 +76,7 @@ Result Autopilot::arm(bool force) {
   const bool able = !crashed_ && landed_ && ready() && !refuses_arming_;
   if (!able || (!force && !prearm_ok())) {
     report(Severity::kCritical, "Arming denied: Resolve system health failures first");
-    tell(EventKind::kArmingRefused);
+    emit_event(EventKind::kArmingRefused);
     return Result::kTemporarilyRejected;
   }
   armed_ = true;
@@ -88,7 +88,7 @@ Result Autopilot::arm(bool force) {
   model_.set_motors(Motors::kIdle);
   enter_active_mode();
   report(Severity::kInfo, "Armed by external command");
-  tell_armed(EventKind::kArmed, ArmingReason::kCommand);
+  emit_armed_event(EventKind::kArmed, ArmingReason::kCommand);
   return Result::kAccepted;
 }
 
@@ -100,7 +100,7 @@ Result Autopilot::disarm(bool force) {
   }
   disarm_now();
   report(Severity::kInfo, "Disarmed by external command");
-  tell_armed(EventKind::kDisarmed, ArmingReason::kCommand);
+  emit_armed_event(EventKind::kDisarmed, ArmingReason::kCommand);
   return Result::kAccepted;
 }
 
@@ -175,7 +175,7 @@ Result Autopilot::land() {
   const Result result = change_mode(FlightMode::kLand);
   if (armed_ && result == Result::kAccepted) {
     report(Severity::kInfo, "Landing at current position");
-    tell(EventKind::kLanding);
+    emit_event(EventKind::kLanding);
   }
   return result;
 }

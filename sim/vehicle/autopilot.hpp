@@ -185,9 +185,9 @@ class Autopilot {
   void disarm_now();
 
   // autopilot_events.cpp
-  void tell(EventKind kind, std::uint8_t detail = 0);
-  void tell_armed(EventKind kind, ArmingReason reason);
-  void tell_failsafe(FlightMode mode);
+  void emit_event(EventKind kind, std::uint8_t detail = 0);
+  void emit_armed_event(EventKind kind, ArmingReason reason);
+  void emit_failsafe_event(FlightMode mode);
   void watch_checks();
 
   // autopilot_failsafe.cpp

@@ -26,7 +26,7 @@ std::vector<StatusText> Autopilot::take_status_texts() {
   return std::exchange(texts_, {});
 }
 
-void Autopilot::tell(EventKind kind, std::uint8_t detail) {
+void Autopilot::emit_event(EventKind kind, std::uint8_t detail) {
   keep_newest(events_, {kind, boot_time(), static_cast<std::uint32_t>(intended_mode_), detail}, kMaxEvents);
 }
 
@@ -34,14 +34,15 @@ std::vector<FlightEvent> Autopilot::take_events() {
   return std::exchange(events_, {});
 }
 
-void Autopilot::tell_armed(EventKind kind, ArmingReason reason) {
-  tell(kind, static_cast<std::uint8_t>(reason));
+void Autopilot::emit_armed_event(EventKind kind, ArmingReason reason) {
+  emit_event(kind, static_cast<std::uint8_t>(reason));
 }
 
 /// The recordings know two of the actions.
-void Autopilot::tell_failsafe(FlightMode mode) {
-  if (mode == FlightMode::kPosition) tell(EventKind::kFailsafe, static_cast<std::uint8_t>(FailsafeAction::kPosition));
-  if (mode == FlightMode::kHold) tell(EventKind::kFailsafe, static_cast<std::uint8_t>(FailsafeAction::kHold));
+void Autopilot::emit_failsafe_event(FlightMode mode) {
+  if (mode == FlightMode::kPosition)
+    emit_event(EventKind::kFailsafe, static_cast<std::uint8_t>(FailsafeAction::kPosition));
+  if (mode == FlightMode::kHold) emit_event(EventKind::kFailsafe, static_cast<std::uint8_t>(FailsafeAction::kHold));
 }
 
 /// The report names all that is amiss. With anything but the stream amiss it would read otherwise than in the
@@ -51,7 +52,7 @@ void Autopilot::watch_checks() {
                            !crashed_ && battery_level() == BatteryLevel::kOk;
   if (!as_recorded || stream_live() == stream_reported_) return;
   stream_reported_ = stream_live();
-  tell(EventKind::kChecks, stream_reported_ ? 1 : 0);
+  emit_event(EventKind::kChecks, stream_reported_ ? 1 : 0);
 }
 
 }  // namespace jink::sim::vehicle

@@ -119,7 +119,7 @@ void Autopilot::update_failsafe() {
   if (battery && (!wanted || severity(*battery) > severity(*wanted))) wanted = battery;
   if (wanted && (!failsafe_ || severity(*wanted) > severity(*failsafe_))) {
     report(Severity::kCritical, "Failsafe activated");
-    tell_failsafe(*wanted);
+    emit_failsafe_event(*wanted);
   }
   failsafe_ = wanted;
 }

@@ -221,7 +221,7 @@ void Autopilot::update_landed() {
       landed_ = false;
       has_flown_ = true;
       report(Severity::kInfo, "Takeoff detected");
-      tell(EventKind::kTakeoffDetected);
+      emit_event(EventKind::kTakeoffDetected);
     }
     return;
   }
@@ -240,7 +240,7 @@ void Autopilot::touch_down() {
   phase_ = Phase::kLanded;
   if (armed_) model_.set_motors(Motors::kIdle);
   report(Severity::kInfo, "Landing detected");
-  tell(EventKind::kLandingDetected);
+  emit_event(EventKind::kLandingDetected);
 }
 
 void Autopilot::update_auto_disarm() {
@@ -250,7 +250,7 @@ void Autopilot::update_auto_disarm() {
   if (delay <= 0.0 || time() - since < delay) return;
   report(Severity::kInfo, has_flown_ ? "Disarmed by landing" : "Disarmed by auto preflight disarming");
   // The number of the other reason is in no recording.
-  if (has_flown_) tell_armed(EventKind::kDisarmed, ArmingReason::kLanding);
+  if (has_flown_) emit_armed_event(EventKind::kDisarmed, ArmingReason::kLanding);
   disarm_now();
 }
 

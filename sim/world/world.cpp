@@ -89,7 +89,7 @@ double quick_bound(const config::Obstacle& obstacle, const Sphere& bound, const 
 
 }  // namespace
 
-SweepResult sweep(const SphereWay& a, const SphereWay& b, double t0, double t1) {
+SweepResult sweep(const SphereSegment& a, const SphereSegment& b, double t0, double t1) {
   const Vec3 from = a.from - b.from;
   const Vec3 change = (a.to - b.to) - from;
   const double square = change.squaredNorm();

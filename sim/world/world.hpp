@@ -22,7 +22,7 @@ struct SweepResult {
 };
 
 /// The straight way of a sphere during one step.
-struct SphereWay {
+struct SphereSegment {
   Vec3 from = Vec3::Zero();
   Vec3 to = Vec3::Zero();
   double radius = 0.0;
@@ -30,7 +30,7 @@ struct SphereWay {
 
 /// The smallest distance between the surfaces of two spheres in continuous time while both go at constant velocity from
 /// `t0` to `t1`, negative where they overlap; `obstacle` stays -1. O(1).
-[[nodiscard]] SweepResult sweep(const SphereWay& a, const SphereWay& b, double t0, double t1);
+[[nodiscard]] SweepResult sweep(const SphereSegment& a, const SphereSegment& b, double t0, double t1);
 
 /// A scenario brought to life. All times are scenario time in seconds; for t < 0 the clock does not run yet and the
 /// obstacles stand at their t = 0 positions. ENU, m. Immutable after construction, so all members are thread safe.

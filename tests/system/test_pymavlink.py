@@ -9,7 +9,7 @@ import sys
 
 from flight import CONFIG, Arena, check, interrupt, main, wait
 
-CLIENT = pathlib.Path(__file__).resolve().parents[1] / "sim" / "pymavlink_client.py"
+CLIENT = pathlib.Path(__file__).resolve().parents[1] / "sim" / "mavlink" / "pymavlink_client.py"
 
 
 def test(jink, instance):

@@ -137,7 +137,7 @@ TEST_P(OpenLoop, FindsAPlanWhereverAFlightExists) {
     const config::Scenario scenario =
         as_tracked(sim::families::make_world(GetParam(), static_cast<std::uint64_t>(seed)));
     SCOPED_TRACE(scenario.name);
-    const tools::lab::oracle::Judgement judgement = tools::lab::oracle::judge(scenario);
+    const tools::lab::oracle::OracleResult judgement = tools::lab::oracle::judge(scenario);
     const Plan found = plan(scenario);
     expect_true(scenario, found);
     const bool reaches = found.status == PlanStatus::kReaches;
@@ -290,7 +290,7 @@ TEST_P(WallWithAHole, IsFlownThroughWhereverItIs) {
   for (const double y : {-2.0, -1.0, 0.0, 1.5, 2.2}) {
     SCOPED_TRACE("hole at y = " + std::to_string(y));
     const config::Scenario scenario = hall(wall(GetParam().radius, y, GetParam().height));
-    const tools::lab::oracle::Judgement judgement = tools::lab::oracle::judge(scenario);
+    const tools::lab::oracle::OracleResult judgement = tools::lab::oracle::judge(scenario);
     EXPECT_EQ(judgement.verdict, tools::lab::oracle::Verdict::kSolvable);
     const Plan found = plan(scenario);
     expect_true(scenario, found);

@@ -8,70 +8,70 @@
 
 namespace jink::tools::base {
 
-void JsonLine::separate() {
+void JsonWriter::separate() {
   if (line_.empty()) return;
   const char last = line_.back();
   if (last != '{' && last != '[' && last != ':') line_ += ',';
 }
 
-JsonLine& JsonLine::key(std::string_view name) {
+JsonWriter& JsonWriter::key(std::string_view name) {
   separate();
   line_.append("\"").append(name).append("\":");
   return *this;
 }
 
-JsonLine& JsonLine::open(char bracket) {
+JsonWriter& JsonWriter::open(char bracket) {
   separate();
   line_ += bracket;
   return *this;
 }
 
-JsonLine& JsonLine::close(char bracket) {
+JsonWriter& JsonWriter::close(char bracket) {
   line_ += bracket;
   return *this;
 }
 
-void JsonLine::append(double value) {
+void JsonWriter::append(double value) {
   std::array<char, 32> digits{};
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   line_.append(digits.data(), end);
   if (value == 0.0 && std::signbit(value)) line_ += ".0";  // "-0" would be read as the integer 0
 }
 
-JsonLine& JsonLine::number(double value) {
+JsonWriter& JsonWriter::number(double value) {
   separate();
   std::isfinite(value) ? append(value) : static_cast<void>(line_.append("null"));
   return *this;
 }
 
-JsonLine& JsonLine::exact(double value) {
+JsonWriter& JsonWriter::exact(double value) {
   if (std::isfinite(value)) return number(value);
   return text(std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf");
 }
 
-JsonLine& JsonLine::integer(std::uint64_t value) {
+JsonWriter& JsonWriter::integer(std::uint64_t value) {
   separate();
   line_ += std::to_string(value);
   return *this;
 }
 
-JsonLine& JsonLine::flag(bool value) {
+JsonWriter& JsonWriter::flag(bool value) {
   separate();
   line_ += value ? "true" : "false";
   return *this;
 }
 
-JsonLine& JsonLine::text(std::string_view value) {
+JsonWriter& JsonWriter::text(std::string_view value) {
   separate();
   line_ += nlohmann::json(value).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return *this;
 }
 
-JsonLine& JsonLine::vector(const Vec3& v) {
+JsonWriter& JsonWriter::vector(const Vec3& v) {
   return open('[').number(v.x()).number(v.y()).number(v.z()).close(']');
 }
 
-JsonLine& JsonLine::exact_vector(const Vec3& v) {
+JsonWriter& JsonWriter::exact_vector(const Vec3& v) {
   return open('[').exact(v.x()).exact(v.y()).exact(v.z()).close(']');
 }
 

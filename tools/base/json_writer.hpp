@@ -11,23 +11,23 @@
 namespace jink::tools::base {
 
 /// Values follow one another; commas are set where they belong. Nothing checks that keys and brackets match.
-class JsonLine {
+class JsonWriter {
  public:
-  JsonLine& key(std::string_view name);
-  JsonLine& open(char bracket);
-  JsonLine& close(char bracket);
+  JsonWriter& key(std::string_view name);
+  JsonWriter& open(char bracket);
+  JsonWriter& close(char bracket);
   /// The shortest decimal that reads back to the same bits, -0.0 too; null where it is not finite.
-  JsonLine& number(double value);
+  JsonWriter& number(double value);
   /// As number(), but what is not finite is kept as text: "inf", "-inf" or "nan".
-  JsonLine& exact(double value);
-  JsonLine& integer(std::uint64_t value);
-  JsonLine& flag(bool value);
+  JsonWriter& exact(double value);
+  JsonWriter& integer(std::uint64_t value);
+  JsonWriter& flag(bool value);
   /// Bytes that are no UTF-8 are replaced.
-  JsonLine& text(std::string_view value);
+  JsonWriter& text(std::string_view value);
   /// [x, y, z], each as number().
-  JsonLine& vector(const Vec3& v);
+  JsonWriter& vector(const Vec3& v);
   /// [x, y, z], each as exact().
-  JsonLine& exact_vector(const Vec3& v);
+  JsonWriter& exact_vector(const Vec3& v);
 
   [[nodiscard]] const std::string& str() const { return line_; }
   void clear() { line_.clear(); }

@@ -8,7 +8,7 @@
 
 namespace jink::tools::cli {
 
-std::string live_text(const LiveStatus& s) {
+std::string progress_text(const ProgressStatus& s) {
   std::string text = fmt::format("[{:6.1f} s]", s.t);
   if (!s.mode.empty()) text += " " + s.mode;
   for (std::size_t i = 0; i < s.stale.size(); ++i) text += (i == 0 ? "  ! " : ", ") + s.stale[i];
@@ -23,22 +23,22 @@ std::string live_text(const LiveStatus& s) {
   return text;
 }
 
-bool LiveLine::due(double now) {
+bool ProgressLine::due(double now) {
   const bool first = !last_;
   if (last_ && now - *last_ < period_) return false;
   last_ = now;
   return !first || printer_.terminal();
 }
 
-void LiveLine::show(const std::string& text) {
+void ProgressLine::show(const std::string& text) {
   printer_.terminal() ? printer_.live(text) : printer_.line(text);
 }
 
-LiveFlight::LiveFlight(const config::Mission& mission, double stale_state, BackgroundPrinter& printer,
-                       const bridge::base::Clock* pace)
+FlightProgress::FlightProgress(const config::Mission& mission, double stale_state, BackgroundPrinter& printer,
+                               const bridge::base::Clock* pace)
     : mission_(mission), stale_state_(stale_state), line_(printer, kPlainPeriod), pace_(pace) {}
 
-void LiveFlight::on_state(double t, const bridge::vehicle::VehicleState& state) {
+void FlightProgress::on_state(double t, const bridge::vehicle::VehicleState& state) {
   const double now = pace_ != nullptr ? pace_->now() : t;
   position_ = state.position;
   if (!line_.due(now)) return;
@@ -51,10 +51,10 @@ void LiveFlight::on_state(double t, const bridge::vehicle::VehicleState& state) 
     find_progress(state.position);
   }
   find_stale(t, state);
-  line_.show(live_text(status_));
+  line_.show(progress_text(status_));
 }
 
-void LiveFlight::find_progress(const Vec3& position) {
+void FlightProgress::find_progress(const Vec3& position) {
   if (flown_) return;  // a landing leads away from the target
   double left = (mission_.waypoints[waypoint_] - position).norm();
   for (std::size_t i = waypoint_ + 1; i < mission_.waypoints.size(); ++i)
@@ -65,7 +65,7 @@ void LiveFlight::find_progress(const Vec3& position) {
   status_.progress = whole_ > 0.0 ? 1.0 - left / whole_ : 1.0;
 }
 
-void LiveFlight::find_stale(double t, const bridge::vehicle::VehicleState& state) {
+void FlightProgress::find_stale(double t, const bridge::vehicle::VehicleState& state) {
   status_.stale.clear();
   const auto old = [](const char* what, double age) { return fmt::format("{} {:.1f} s old", what, age); };
   if (state.heartbeat_stamp < 0.0) {
@@ -84,7 +84,7 @@ void LiveFlight::find_stale(double t, const bridge::vehicle::VehicleState& state
   }
 }
 
-void LiveFlight::on_tracks(double t, const std::vector<planner::base::Track>& tracks) {
+void FlightProgress::on_tracks(double t, const std::vector<planner::base::Track>& tracks) {
   last_tracks_ = t;
   status_.tracks = tracks.size();
   status_.nearest = planner::base::kInfinity;
@@ -94,11 +94,11 @@ void LiveFlight::on_tracks(double t, const std::vector<planner::base::Track>& tr
   }
 }
 
-void LiveFlight::on_plan(double, const bridge::companion::PlanResult& result) {
+void FlightProgress::on_plan(double, const bridge::companion::PlanResult& result) {
   status_.plan_ms = result.ms;
 }
 
-void LiveFlight::on_event(double, std::string_view name, const std::string& detail) {
+void FlightProgress::on_event(double, std::string_view name, const std::string& detail) {
   if (name == "phase") {
     const bool flies = detail.starts_with("flying");
     flown_ = flying_ && !flies;

@@ -14,7 +14,7 @@
 namespace jink::tools::cli {
 
 /// What the line tells. What is not known is left out.
-struct LiveStatus {
+struct ProgressStatus {
   double t = 0.0;                       ///< s
   std::string mode{};                   ///< of the autopilot
   std::optional<double> progress{};     ///< share of the way to the last waypoint, 0 to 1
@@ -29,13 +29,13 @@ struct LiveStatus {
 
 /// One line without its end: "[  12.3 s] offboard  ! tracks 1.4 s old  62 %  7.6 m to go  ...", what is stale near its
 /// beginning, so that a narrow terminal does not cut it off.
-[[nodiscard]] std::string live_text(const LiveStatus& status);
+[[nodiscard]] std::string progress_text(const ProgressStatus& status);
 
 /// Says when a line is due, and shows it: five a second on a terminal, cut to its width, else one in a few seconds.
-class LiveLine {
+class ProgressLine {
  public:
   /// `plain_period`: s between lines where there is no terminal. The printer outlives this.
-  LiveLine(BackgroundPrinter& printer, double plain_period)
+  ProgressLine(BackgroundPrinter& printer, double plain_period)
       : printer_(printer), period_(printer.terminal() ? kTerminalPeriod : plain_period) {}
 
   /// Whether one is due at `now`, s of any clock that does not go back; if so the next one is a period
@@ -51,11 +51,11 @@ class LiveLine {
 };
 
 /// The live line of a companion's flight. Not thread safe: the flight's loop calls it, and it never waits.
-class LiveFlight final : public bridge::companion::FlightObserver {
+class FlightProgress final : public bridge::companion::FlightObserver {
  public:
   /// `pace`: the clock by which lines are due; null: the flight's own time. Both outlive this.
-  LiveFlight(const config::Mission& mission, double stale_state, BackgroundPrinter& printer,
-             const bridge::base::Clock* pace = nullptr);
+  FlightProgress(const config::Mission& mission, double stale_state, BackgroundPrinter& printer,
+                 const bridge::base::Clock* pace = nullptr);
 
   void on_state(double t, const bridge::vehicle::VehicleState& state) override;
   void on_tracks(double t, const std::vector<planner::base::Track>& tracks) override;
@@ -63,7 +63,7 @@ class LiveFlight final : public bridge::companion::FlightObserver {
   void on_event(double t, std::string_view name, const std::string& detail) override;
 
   /// As of the newest on_state().
-  [[nodiscard]] const LiveStatus& status() const { return status_; }
+  [[nodiscard]] const ProgressStatus& status() const { return status_; }
 
  private:
   static constexpr double kPlainPeriod = 2.0;   // s
@@ -73,9 +73,9 @@ class LiveFlight final : public bridge::companion::FlightObserver {
 
   const config::Mission& mission_;
   double stale_state_;
-  LiveLine line_;
+  ProgressLine line_;
   const bridge::base::Clock* pace_;
-  LiveStatus status_;
+  ProgressStatus status_;
   Vec3 position_ = Vec3::Zero();
   std::optional<double> last_tracks_;
   std::size_t waypoint_ = 0;  // the next one

@@ -90,12 +90,12 @@ std::string verdict(const Checks& checks) {
   };
   const auto faults = count(Check::Level::kFault) + count(Check::Level::kMissing);
   const auto warnings = count(Check::Level::kWarning);
-  if (faults == 0 && warnings == 0) return "all is well";
+  if (faults == 0 && warnings == 0) return "ready to fly";
   const auto counted = [](auto number, const char* what) {
     return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
   };
-  if (faults == 0) return "a flight is possible; " + counted(warnings, "warning");
-  return "no flight like this: " + counted(faults, "fault") + ", " + counted(warnings, "warning");
+  if (faults == 0) return "ready to fly, with " + counted(warnings, "warning");
+  return "not ready to fly: " + counted(faults, "fault") + ", " + counted(warnings, "warning");
 }
 
 int run(const DoctorOptions& options) {
@@ -125,7 +125,7 @@ int run(const DoctorOptions& options) {
   append(bridge::doctor::inspect_mission(mission, heard));
   append(tracks.get());
   if (cli::interrupted()) {
-    printer.line("interrupted: nothing is concluded");
+    printer.line("interrupted: no result");
     return base::kExitFailed;
   }
   tell(checks, printer);

@@ -34,9 +34,9 @@ struct FlyOptions {
 };
 
 /// Events as lines.
-class Teller final : public bridge::companion::FlightObserver {
+class EventPrinter final : public bridge::companion::FlightObserver {
  public:
-  explicit Teller(cli::BackgroundPrinter& printer) : printer_(printer) {}
+  explicit EventPrinter(cli::BackgroundPrinter& printer) : printer_(printer) {}
 
   void on_event(double t, std::string_view name, const std::string& detail) override {
     printer_.line(fmt::format("[{:6.1f} s] {}{}{}", t, name, detail.empty() ? "" : ": ", detail));
@@ -64,7 +64,7 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
 /// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
 /// Ctrl-C brakes and hands over to HOLD.
 void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLink& link,
-              const bridge::base::Clock& clock, double rate_hz, bridge::base::Wake& wake,
+              const bridge::base::Clock& clock, double rate_hz, bridge::base::Notifier& notifier,
               const std::vector<bridge::companion::FlightObserver*>& observers) {
   constexpr double kFailing_s = 10.0;  // of turns that throw, after which HOLD has been asked for often enough
   const auto period =
@@ -88,7 +88,8 @@ void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLin
       for (bridge::companion::FlightObserver* observer : observers)
         observer->on_event(clock.now(), notice->name, notice->detail);
     }
-    wake.wait_until(failed ? std::max(next, std::chrono::steady_clock::now() + std::chrono::milliseconds(500)) : next);
+    notifier.wait_until(failed ? std::max(next, std::chrono::steady_clock::now() + std::chrono::milliseconds(500))
+                               : next);
     // A turn that came late is not made up for: setpoints in a burst say nothing.
     const auto now = std::chrono::steady_clock::now();
     if (next <= now) next = std::max(next + period, now);
@@ -124,7 +125,7 @@ struct Transports {
     return {*vehicle, tracks, planner, observers, &clock, intents ? &*intents : nullptr};
   }
 
-  bridge::dds::DdsNode node;
+  bridge::dds::DdsParticipant node;
   std::optional<bridge::dds::DdsTrackReader> jink;
   std::optional<bridge::dds::DdsAutowareReader> autoware;
   std::optional<bridge::mavlink::AdsbTracks> adsb;
@@ -149,11 +150,11 @@ int run(const FlyOptions& options) {
   const config::Mission mission = config::load_mission(options.mission);
   cli::catch_signals();
   const bridge::base::SteadyClock clock;
-  bridge::base::Wake wake;
+  bridge::base::Notifier notifier;
   std::optional<cli::BackgroundPrinter> background(printer);
-  Teller teller(*background);
-  cli::LiveFlight live(mission, settings.companion.stale_state, *background);
-  std::vector<bridge::companion::FlightObserver*> observers{&teller, &live};
+  EventPrinter event_printer(*background);
+  cli::FlightProgress live(mission, settings.companion.stale_state, *background);
+  std::vector<bridge::companion::FlightObserver*> observers{&event_printer, &live};
   std::unique_ptr<log::FlightLog> log;
   std::unique_ptr<bridge::mavsdk::MavsdkLink> link;
   try {
@@ -171,15 +172,15 @@ int run(const FlyOptions& options) {
   });
   Transports transports(mission, *link, clock);
   bridge::companion::ThreadedPlanner planner(
-      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &wake);
-  transports.tracks.notify(wake);
+      {settings.horizon, settings.optimizer, options.common.seed, options.common.thread_count()}, clock, &notifier);
+  transports.tracks.notify(notifier);
   bridge::companion::Companion companion(mission, settings, transports.parts(planner, observers, clock));
   background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
                                mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
                                mission.connection, mission.dds_domain, options.common.seed));
   if (const std::string trouble = bridge::dds::discovery_trouble(mission.dds_domain); !trouble.empty())
     background->line("warning: " + trouble);
-  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, wake, observers);
+  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, notifier, observers);
 
   background.reset();
   const bridge::companion::FlightSummary flight = companion.summary();

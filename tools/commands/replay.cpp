@@ -61,7 +61,7 @@ int replay_scenario(const ReplayOptions& options) {
   FaultPrinter faults(*background);
   const config::Mission mission = sim::flight::mission_of(scenario);
   const bridge::base::SteadyClock pace;  // of the live line alone: the flight's time is virtual
-  cli::LiveFlight live(mission, settings.companion.stale_state, *background, &pace);
+  cli::FlightProgress live(mission, settings.companion.stale_state, *background, &pace);
   loop.flight_observers = {&faults, &live};
   if (options.pilot != kOwnPilot) {
     loop.planner = [&](const bridge::companion::PlannerTaskSettings& planning, double latency) {
@@ -177,7 +177,7 @@ int replay_flight(const ReplayOptions& options) {
           fmt::format("{}: its plans are of '{}'; only jink's can be made again", options.scenario, flight->pilot()));
     const log::ReplaySettings settings = replay_settings(options, *flight, printer);
     comparison = log::compare_plans(*flight, settings, [&](std::size_t plans) {
-      if (plans % kLivePlans == 0) printer.live(fmt::format("{} plans made again", plans));
+      if (plans % kLivePlans == 0) printer.live(fmt::format("{} plans recomputed", plans));
     });
   } catch (const std::runtime_error& error) {
     throw cli::UsageError(error.what());

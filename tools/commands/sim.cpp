@@ -49,9 +49,9 @@ double unix_now() {
 }
 
 /// Events to the terminal and the log, the truth to the log.
-class Teller final : public sim::flight::SimulatorObserver {
+class LogSink final : public sim::flight::SimulatorObserver {
  public:
-  explicit Teller(cli::BackgroundPrinter& printer) : printer_(printer) {}
+  explicit LogSink(cli::BackgroundPrinter& printer) : printer_(printer) {}
   /// From here on, what was told before included. None: there is no log.
   void write_to(log::FlightLog* log) {
     log_ = log;
@@ -103,7 +103,7 @@ std::string status(const sim::flight::Simulator& simulator, const bridge::dds::D
     const auto& motion = simulator.autopilot(k).true_motion();
     const config::ScenarioVehicle& vehicle = simulator.vehicle(k);
     const double whole = (vehicle.target - vehicle.start).norm();
-    cli::LiveStatus live;
+    cli::ProgressStatus live;
     live.t = simulator.scenario_time();
     live.mode = mode_text(simulator.autopilot(k));
     if (k == 0 && readers == 0) live.stale.emplace_back("no track reader");
@@ -112,13 +112,13 @@ std::string status(const sim::flight::Simulator& simulator, const bridge::dds::D
     live.nearest = simulator.world().clearance(motion.position, live.t, vehicle.vehicle.radius);
     live.speed = motion.velocity.norm();
     live.height = motion.position.z();
-    text += (k == 0 ? "" : fmt::format("  [{}] ", k)) + cli::live_text(live);
+    text += (k == 0 ? "" : fmt::format("  [{}] ", k)) + cli::progress_text(live);
   }
   if (simulator.vehicle_count() > 0) return text;
-  cli::LiveStatus live;
+  cli::ProgressStatus live;
   live.t = simulator.now();
   if (readers == 0) live.stale.emplace_back("no track reader");
-  return cli::live_text(live);
+  return cli::progress_text(live);
 }
 
 /// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second. A turn in which none is waited
@@ -147,7 +147,7 @@ void run_until_the_end(sim::flight::Simulator& simulator, const SimOptions& opti
   const auto begun = std::chrono::steady_clock::now();
   auto turn = begun;
   bool awaited = false;  // in lockstep: a companion is, in this turn
-  cli::LiveLine live(printer, kPlainPeriod);
+  cli::ProgressLine live(printer, kPlainPeriod);
   const bridge::base::SteadyClock pace;  // simulated time may run a thousand times as fast
   for (int step = 0; !cli::interrupted(); ++step) {
     simulator.step();
@@ -172,7 +172,8 @@ class DdsSides {
   DdsSides(const SimOptions& options, std::size_t vehicles) : node_(options.domain, "jink sim"), jumps_(vehicles) {
     for (std::size_t k = 0; k < vehicles; ++k) {
       const std::size_t instance = static_cast<std::size_t>(options.instance) + k;
-      sides_.push_back(std::make_unique<sim::dds::SimDds>(node_, instance == 0 ? "" : fmt::format("px4_{}", instance)));
+      sides_.push_back(
+          std::make_unique<sim::dds::VehicleTopics>(node_, instance == 0 ? "" : fmt::format("px4_{}", instance)));
     }
   }
 
@@ -183,9 +184,9 @@ class DdsSides {
   }
 
  private:
-  bridge::dds::DdsNode node_;
-  std::vector<std::unique_ptr<sim::dds::SimDds>> sides_;
-  std::vector<sim::dds::JumpWatch> jumps_;
+  bridge::dds::DdsParticipant node_;
+  std::vector<std::unique_ptr<sim::dds::VehicleTopics>> sides_;
+  std::vector<sim::dds::EstimateJumpDetector> jumps_;
 };
 
 /// The summary of vehicle 0's flight; its outcome and reason are those of the vehicle that fared worst.
@@ -211,7 +212,7 @@ nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const
 void introduce(const config::Scenario& scenario, const SimOptions& options, cli::BackgroundPrinter& printer) {
   printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
                            options.no_tracks
-                               ? ", not told"
+                               ? ", not published"
                                : fmt::format(" as {} on DDS domain {}", bridge::dds::kTracksTopic, options.domain),
                            options.common.seed));
   const int vehicles = options.no_vehicle ? 0 : 1 + static_cast<int>(scenario.vehicles.size());
@@ -225,7 +226,7 @@ void introduce(const config::Scenario& scenario, const SimOptions& options, cli:
     printer.line("warning: " + trouble);
   if (options.no_vehicle && !options.common.json.empty())
     printer.line("warning: --json: nothing is written, without a vehicle there is no flight to sum up");
-  printer.line("Ctrl-C ends it");
+  printer.line("press Ctrl-C to stop");
 }
 
 void check_instances(const config::Scenario& scenario, const SimOptions& options) {
@@ -256,7 +257,7 @@ int run(const SimOptions& options) {
   cli::catch_signals();
   std::unique_ptr<log::FlightLog> log;
   std::optional<cli::BackgroundPrinter> background(printer);
-  Teller teller(*background);
+  LogSink log_sink(*background);
   std::unique_ptr<bridge::dds::DdsTrackWriter> writer;  // none: somebody else tells of the obstacles
   if (!options.no_tracks) writer = std::make_unique<bridge::dds::DdsTrackWriter>(options.domain);
   const auto publish = [&](const sim::world::TrackMessage& message, double now) {
@@ -276,10 +277,10 @@ int run(const SimOptions& options) {
     if (dds) dds->step(k, now, autopilot);
   };
   const std::unique_ptr<sim::flight::Simulator> simulator =
-      make_simulator(scenario, choices, {publish, {&teller}, on_step});
+      make_simulator(scenario, choices, {publish, {&log_sink}, on_step});
   if (!options.log.empty())  // what another simulator writes is left alone where that has the port
     log = std::make_unique<log::FlightLog>(options.log, cli::scenario_header(scenario, options.common.seed, settings));
-  teller.write_to(log.get());
+  log_sink.write_to(log.get());
   introduce(scenario, options, *background);
   run_until_the_end(*simulator, options, *background, writer.get());
   background.reset();  // nothing is said by the simulator from here on
@@ -319,7 +320,7 @@ cli::Subcommand add_sim(CLI::App& jink) {
   app->add_flag("--dds-vehicle", options->dds_vehicle,
                 "the vehicles on PX4's DDS topics too, as its uXRCE-DDS agent has them: fmu/out/"
                 "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
-  app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer tells of the obstacles");
+  app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer publishes the obstacles");
   app->add_option("--domain", options->domain, "DDS domain, 0 to 232")
       ->transform(cli::whole_number(0, 232))
       ->capture_default_str();

@@ -131,7 +131,7 @@ void FlightLog::write(const Record& record) {
   std::visit([&](const auto& content) { write_content(record.t, content); }, record.content);
 }
 
-base::JsonLine& FlightLog::begin(std::string_view type, double t) {
+base::JsonWriter& FlightLog::begin(std::string_view type, double t) {
   line_.clear();
   return line_.open('{').key("type").text(type).key("t").number(t);
 }

@@ -106,15 +106,15 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
   void write_content(double t, const bridge::vehicle::Setpoint& setpoint);
   void write_content(double t, const Event& event);
   void write_content(double t, const Truth& truth);
-  base::JsonLine& begin(std::string_view type, double t);
+  base::JsonWriter& begin(std::string_view type, double t);
   void add_job(const bridge::companion::PlanJob& job);
   void add_forecast(const bridge::prediction::Forecast& forecast);
   void add_points(std::string_view key, const planner::base::TimedPath& path);
 
   std::filesystem::path file_;
   FlightLogOptions options_;
-  std::ofstream out_;    // the thread's own, once that runs
-  base::JsonLine line_;  // likewise
+  std::ofstream out_;      // the thread's own, once that runs
+  base::JsonWriter line_;  // likewise
 
   mutable std::mutex mutex_;  // guards all below but the thread
   std::condition_variable_any filled_, emptied_;

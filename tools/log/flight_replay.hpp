@@ -34,7 +34,7 @@ class FlightRecording {
 
   [[nodiscard]] const std::string& name() const { return name_; }  ///< of the scenario or mission
   [[nodiscard]] const std::string& version() const { return version_; }
-  /// Who made the plans: jink, or a rival of the arena.
+  /// Who made the plans: jink, or a baseline of the arena.
   [[nodiscard]] const std::string& pilot() const { return pilot_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   /// Where the header stands, and its parameters: for config::recorded_settings().
@@ -50,7 +50,7 @@ class FlightRecording {
   [[nodiscard]] bool cut_off() const { return lines_.cut_off(); }
 
  private:
-  LogLines lines_;
+  LogReader lines_;
   std::string name_, version_, source_;
   std::string pilot_ = "jink";
   std::uint64_t seed_ = 1;

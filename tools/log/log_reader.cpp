@@ -22,7 +22,7 @@ std::string quoted(const char* key) {
 
 }  // namespace
 
-LogLines::LogLines(const std::filesystem::path& log) : file_(log), in_(log, std::ios::binary) {
+LogReader::LogReader(const std::filesystem::path& log) : file_(log), in_(log, std::ios::binary) {
   if (!in_) throw std::runtime_error(log.string() + ": cannot read the flight log");
   std::string text;
   if (!next_line(text)) fail_at(1, std::string(kNoHeader) + ": the file is empty");
@@ -34,7 +34,7 @@ LogLines::LogLines(const std::filesystem::path& log) : file_(log), in_(log, std:
 }
 
 // The next line with content, in line_ its number.
-bool LogLines::next_line(std::string& text) {
+bool LogReader::next_line(std::string& text) {
   while (std::getline(in_, text)) {
     ++read_;
     if (text.size() > kLongestLine) fail_at(read_, "is longer than 256 MiB");
@@ -47,7 +47,7 @@ bool LogLines::next_line(std::string& text) {
   return false;
 }
 
-bool LogLines::next(Json& record) {
+bool LogReader::next(Json& record) {
   std::string text;
   if (!next_line(text)) return false;
   record = Json::parse(text, nullptr, false);
@@ -61,7 +61,7 @@ bool LogLines::next(Json& record) {
   return true;
 }
 
-void LogLines::fail_at(std::size_t line, const std::string& what) const {
+void LogReader::fail_at(std::size_t line, const std::string& what) const {
   throw std::runtime_error(file_.string() + ":" + std::to_string(line) + ": " + what);
 }
 

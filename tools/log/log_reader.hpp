@@ -13,11 +13,11 @@
 namespace jink::tools::log {
 
 /// Reads records one by one; holds one line in memory. Lines without content are skipped.
-class LogLines {
+class LogReader {
  public:
   /// Opens `log` and reads its header. Throws std::runtime_error "FILE: ..." where it cannot be read and "FILE:LINE:
   /// ..." where it does not begin with a jink-log/1 header.
-  explicit LogLines(const std::filesystem::path& log);
+  explicit LogReader(const std::filesystem::path& log);
 
   [[nodiscard]] const nlohmann::json& header() const { return header_; }
   /// The next record, a JSON object; false at the end. Throws as above for a line that is none; but where the last
@@ -47,7 +47,7 @@ class LogLines {
   bool cut_off_ = false;
 };
 
-// Fields of a record. All throw std::invalid_argument that names the key, for LogLines::fail() to give its place.
+// Fields of a record. All throw std::invalid_argument that names the key, for LogReader::fail() to give its place.
 
 /// Null where a number belongs: the log's way to write one that is not finite.
 struct NotFinite {};

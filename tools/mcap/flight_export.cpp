@@ -193,7 +193,7 @@ class FlightExport {
     const auto& motion = flight_.truth.empty() ? flight_.states : flight_.truth;
     write_transforms(std::string(kVehicle), motion);
     for (const report::MotionSample& sample : motion) {
-      base::JsonLine line;
+      base::JsonWriter line;
       line.open('{').key("speed").number(norm(sample.velocity)).key("height").number(sample.position[2]).close('}');
       write("jink.Speed", "/speed", sample.t, line.str());
     }
@@ -271,7 +271,7 @@ class FlightExport {
       const bool blocked = plan.status != "reaches" && plan.status != "progresses";
       if (points.size() > 1) entity.lines.push_back({points, 3.0, blocked ? kBlocked : kPlan});
       write_scene("/scene/plan", kMap, plan.t, {entity}, true);
-      base::JsonLine line;
+      base::JsonWriter line;
       line.open('{').key("ms").number(plan.ms).key("status").text(plan.status).key("kept").flag(plan.kept);
       write("jink.PlanTime", "/plan/time", plan.t, line.key("missed").flag(plan.missed).close('}').str());
     }
@@ -285,7 +285,7 @@ class FlightExport {
       from = "tracks";
     }
     for (const report::ClearanceSample& sample : samples) {
-      base::JsonLine line;
+      base::JsonWriter line;
       line.open('{').key("clearance").number(sample.distance).key("from").text(from).close('}');
       write("jink.Clearance", "/clearance", sample.t, line.str());
     }
@@ -293,10 +293,10 @@ class FlightExport {
 
   void write_events() {
     for (const report::EventRecord& event : flight_.events) {
-      const report::EventTone tone = report::event_tone(event.name, event.detail);
-      const auto level = tone == report::EventTone::kBad    ? foxglove::LogLevel::kError
-                         : tone == report::EventTone::kWarn ? foxglove::LogLevel::kWarning
-                                                            : foxglove::LogLevel::kInfo;
+      const report::EventSeverity tone = report::event_severity(event.name, event.detail);
+      const auto level = tone == report::EventSeverity::kBad    ? foxglove::LogLevel::kError
+                         : tone == report::EventSeverity::kWarn ? foxglove::LogLevel::kWarning
+                                                                : foxglove::LogLevel::kInfo;
       const std::string text = event.detail.empty() ? event.name : event.name + ": " + event.detail;
       write("foxglove.Log", "/events", event.t, foxglove::log(ns(event.t), level, text, "jink"));
     }

@@ -124,39 +124,39 @@ Json properties_of(std::string_view name) {
   return pose;
 }
 
-void put_time(base::JsonLine& line, const char* key, std::uint64_t time_ns) {
+void put_time(base::JsonWriter& line, const char* key, std::uint64_t time_ns) {
   line.key(key).open('{').key("sec").integer(time_ns / kSecond_ns).key("nsec").integer(time_ns % kSecond_ns).close('}');
 }
 
-void put_vector(base::JsonLine& line, const Vec3& v) {
+void put_vector(base::JsonWriter& line, const Vec3& v) {
   line.open('{').key("x").number(v.x()).key("y").number(v.y()).key("z").number(v.z()).close('}');
 }
 
 /// A rotation about the vertical.
-void put_rotation(base::JsonLine& line, const char* key, double yaw) {
+void put_rotation(base::JsonWriter& line, const char* key, double yaw) {
   line.key(key).open('{').key("x").number(0.0).key("y").number(0.0).key("z").number(std::sin(0.5 * yaw));
   line.key("w").number(std::cos(0.5 * yaw)).close('}');
 }
 
-void put_pose(base::JsonLine& line, const Vec3& position, double yaw = 0.0) {
+void put_pose(base::JsonWriter& line, const Vec3& position, double yaw = 0.0) {
   line.open('{').key("position");
   put_vector(line, position);
   put_rotation(line, "orientation", yaw);
   line.close('}');
 }
 
-void put_color(base::JsonLine& line, const Color& c) {
+void put_color(base::JsonWriter& line, const Color& c) {
   line.key("color").open('{').key("r").number(c[0]).key("g").number(c[1]).key("b").number(c[2]);
   line.key("a").number(c[3]).close('}');
 }
 
-void put_points(base::JsonLine& line, std::span<const Vec3> points) {
+void put_points(base::JsonWriter& line, std::span<const Vec3> points) {
   line.key("points").open('[');
   for (const Vec3& p : points) put_vector(line, p);
   line.close(']');
 }
 
-void put_solid(base::JsonLine& line, const Vec3& center, const Vec3& size, const Color& color) {
+void put_solid(base::JsonWriter& line, const Vec3& center, const Vec3& size, const Color& color) {
   line.open('{').key("pose");
   put_pose(line, center);
   line.key("size");
@@ -165,15 +165,15 @@ void put_solid(base::JsonLine& line, const Vec3& center, const Vec3& size, const
   line.close('}');
 }
 
-void put_primitive(base::JsonLine& line, const Sphere& s) {
+void put_primitive(base::JsonWriter& line, const Sphere& s) {
   put_solid(line, s.center, Vec3::Constant(2.0 * s.radius), s.color);
 }
 
-void put_primitive(base::JsonLine& line, const Cube& c) {
+void put_primitive(base::JsonWriter& line, const Cube& c) {
   put_solid(line, c.center, c.edges, c.color);
 }
 
-void put_primitive(base::JsonLine& line, const Triangles& t) {
+void put_primitive(base::JsonWriter& line, const Triangles& t) {
   line.open('{').key("pose");
   put_pose(line, t.origin);
   put_points(line, t.points);
@@ -185,7 +185,7 @@ void put_primitive(base::JsonLine& line, const Triangles& t) {
   line.close(']').close('}');
 }
 
-void put_primitive(base::JsonLine& line, const Line& l) {
+void put_primitive(base::JsonWriter& line, const Line& l) {
   line.open('{').key("type").integer(l.pairs ? 2 : 0).key("pose");
   put_pose(line, Vec3::Zero());
   line.key("thickness").number(l.pixels).key("scale_invariant").flag(true);
@@ -194,7 +194,7 @@ void put_primitive(base::JsonLine& line, const Line& l) {
   line.key("colors").open('[').close(']').key("indices").open('[').close(']').close('}');
 }
 
-void put_primitive(base::JsonLine& line, const Text& t) {
+void put_primitive(base::JsonWriter& line, const Text& t) {
   line.open('{').key("pose");
   put_pose(line, t.position);
   line.key("billboard").flag(true).key("font_size").number(kTextSize_px).key("scale_invariant").flag(true);
@@ -203,13 +203,13 @@ void put_primitive(base::JsonLine& line, const Text& t) {
 }
 
 template <typename Primitive>
-void put_all(base::JsonLine& line, const char* key, const std::vector<Primitive>& primitives) {
+void put_all(base::JsonWriter& line, const char* key, const std::vector<Primitive>& primitives) {
   line.key(key).open('[');
   for (const Primitive& primitive : primitives) put_primitive(line, primitive);
   line.close(']');
 }
 
-void put_entity(base::JsonLine& line, std::uint64_t time_ns, std::string_view frame, const Entity& entity) {
+void put_entity(base::JsonWriter& line, std::uint64_t time_ns, std::string_view frame, const Entity& entity) {
   line.open('{');
   put_time(line, "timestamp", time_ns);
   line.key("frame_id").text(frame).key("id").text(entity.id);
@@ -232,7 +232,7 @@ std::string schema(std::string_view name) {
 
 std::string scene_update(std::uint64_t time_ns, std::string_view frame, const std::vector<Entity>& entities,
                          bool afresh) {
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('{').key("deletions").open('[');
   if (afresh) {
     line.open('{');
@@ -246,7 +246,7 @@ std::string scene_update(std::uint64_t time_ns, std::string_view frame, const st
 }
 
 std::string pose_in_frame(std::uint64_t time_ns, std::string_view frame, const Vec3& position, double yaw) {
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('{');
   put_time(line, "timestamp", time_ns);
   line.key("frame_id").text(frame).key("pose");
@@ -256,7 +256,7 @@ std::string pose_in_frame(std::uint64_t time_ns, std::string_view frame, const V
 }
 
 std::string poses_in_frame(std::uint64_t time_ns, std::string_view frame, std::span<const Vec3> positions) {
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('{');
   put_time(line, "timestamp", time_ns);
   line.key("frame_id").text(frame).key("poses").open('[');
@@ -267,7 +267,7 @@ std::string poses_in_frame(std::uint64_t time_ns, std::string_view frame, std::s
 
 std::string frame_transform(std::uint64_t time_ns, std::string_view parent, std::string_view child,
                             const Vec3& translation) {
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('{');
   put_time(line, "timestamp", time_ns);
   line.key("parent_frame_id").text(parent).key("child_frame_id").text(child).key("translation");
@@ -278,7 +278,7 @@ std::string frame_transform(std::uint64_t time_ns, std::string_view parent, std:
 }
 
 std::string log(std::uint64_t time_ns, LogLevel level, std::string_view message, std::string_view name) {
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('{');
   put_time(line, "timestamp", time_ns);
   line.key("level").integer(static_cast<std::uint64_t>(level)).key("message").text(message).key("name").text(name);

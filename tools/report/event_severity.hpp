@@ -9,10 +9,10 @@
 
 namespace jink::tools::report {
 
-enum class EventTone : std::uint8_t { kPlain, kGood, kWarn, kBad };
+enum class EventSeverity : std::uint8_t { kPlain, kGood, kWarn, kBad };
 
 /// By the event's name and detail.
-[[nodiscard]] inline EventTone event_tone(std::string_view name, std::string_view detail) {
+[[nodiscard]] inline EventSeverity event_severity(std::string_view name, std::string_view detail) {
   static constexpr std::array<std::string_view, 5> kFailed{"collision", "timeout", "left_world", "start_blocked",
                                                            "aborted"};
   static constexpr std::array<std::string_view, 3> kBlocked{"blocked", "start_blocked", "invalid"};
@@ -21,10 +21,10 @@ enum class EventTone : std::uint8_t { kPlain, kGood, kWarn, kBad };
   const auto among = [](const auto& list, std::string_view text) {
     return std::find(list.begin(), list.end(), text) != list.end();
   };
-  if (name == "reached" || detail.starts_with("done: reached")) return EventTone::kGood;
-  if (among(kFailed, name) || detail.starts_with("done: ")) return EventTone::kBad;
-  if (name == "plan_status") return among(kBlocked, detail) ? EventTone::kBad : EventTone::kPlain;
-  return among(kWarnings, name) ? EventTone::kWarn : EventTone::kPlain;
+  if (name == "reached" || detail.starts_with("done: reached")) return EventSeverity::kGood;
+  if (among(kFailed, name) || detail.starts_with("done: ")) return EventSeverity::kBad;
+  if (name == "plan_status") return among(kBlocked, detail) ? EventSeverity::kBad : EventSeverity::kPlain;
+  return among(kWarnings, name) ? EventSeverity::kWarn : EventSeverity::kPlain;
 }
 
 }  // namespace jink::tools::report

@@ -89,7 +89,7 @@ ReportResult write_figure(const ReportSource& source, const std::filesystem::pat
   draw_view(canvas, flight, scale, false, {kLeft, kTop + kTitle + above + kBetween, width, beside});
   draw_legend(canvas, flight, {kLeft, views + 1.5}, width);
   draw_plots(canvas, flight, {kLeft, views + kLegend, width, kPlots - 2.0});
-  write_whole(file, canvas.png(), "the figure");
+  write_atomically(file, canvas.png(), "the figure");
   return {data.lines, data.cut_off + data.not_finite + data.unknown};
 }
 

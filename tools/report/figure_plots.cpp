@@ -133,11 +133,11 @@ void draw_events(Canvas& canvas, const FlightData& flight, const Axes& axes, dou
   std::vector<EventRecord> events = flight.events;
   std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
   for (const EventRecord& event : events) {
-    const EventTone tone = event_tone(event.name, event.detail);
-    if (tone == EventTone::kPlain) continue;
-    const std::string_view color = tone == EventTone::kGood  ? "#007a58"
-                                   : tone == EventTone::kBad ? "#c03a00"
-                                                             : "#9a6400";
+    const EventSeverity tone = event_severity(event.name, event.detail);
+    if (tone == EventSeverity::kPlain) continue;
+    const std::string_view color = tone == EventSeverity::kGood  ? "#007a58"
+                                   : tone == EventSeverity::kBad ? "#c03a00"
+                                                                 : "#9a6400";
     const double x = axes.x(event.t);
     canvas.line(std::array<Spot, 2>{{{x, axes.frame.y - 1.0}, {x, bottom}}},
                 {.color = color, .width = 0.2, .opacity = 0.6});

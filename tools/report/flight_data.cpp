@@ -188,7 +188,7 @@ std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t num
 }
 
 FlightData read_flight(const std::filesystem::path& log) {
-  log::LogLines lines(log);
+  log::LogReader lines(log);
   FlightData flight;
   flight.header = lines.header();
   try {

@@ -48,7 +48,7 @@ std::string embeddable(const std::string& json) {
 
 }  // namespace
 
-void write_whole(const std::filesystem::path& file, std::string_view bytes, const std::string& what) {
+void write_atomically(const std::filesystem::path& file, std::string_view bytes, const std::string& what) {
   const std::filesystem::path part = base::unfinished_name(file, "." + std::to_string(::getpid()) + ".part");
   const auto fail = [&](const std::string& text) {
     std::error_code ignored;
@@ -82,7 +82,7 @@ std::vector<ReportResult> write_report(std::span<const ReportSource> sources, co
   std::string text(page.substr(0, place));
   text += embeddable(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   text += page.substr(place + kDataPlace.size());
-  write_whole(html, text, "the flight report");
+  write_atomically(html, text, "the flight report");
   return results;
 }
 

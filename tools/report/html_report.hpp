@@ -38,6 +38,6 @@ ReportResult write_report(const std::filesystem::path& log, const std::filesyste
                           const nlohmann::json* summary = nullptr);
 
 /// Writes `bytes` as `file`, whole or not at all. Throws std::runtime_error "FILE: cannot write WHAT ...".
-void write_whole(const std::filesystem::path& file, std::string_view bytes, const std::string& what);
+void write_atomically(const std::filesystem::path& file, std::string_view bytes, const std::string& what);
 
 }  // namespace jink::tools::report

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares the ROS 2 package's .msg files with bridge/idl, field by field: names, order, types.
+"""Compares the ROS 2 package's .msg files with bridge/dds/idl, field by field: names, order, types.
 
     check_ros_messages.py PROJECT_ROOT
 """
@@ -52,9 +52,9 @@ def msg_fields(text, package):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    package = root / "bridge/ros2/jink_msgs"
+    package = root / "bridge/dds/ros2/jink_msgs"
     structs = {}
-    for file in sorted((root / "bridge/idl").glob("*.idl")):
+    for file in sorted((root / "bridge/dds/idl").glob("*.idl")):
         structs.update(idl_structs(file.read_text()))
     listed = set(re.findall(r"msg/\w+\.msg", (package / "CMakeLists.txt").read_text()))
     faults = []
@@ -63,7 +63,7 @@ def main():
         fields = msg_fields(file.read_text(), "jink_msgs")
         struct = structs.get(f"jink_msgs::msg::dds_::{file.stem}_")
         if struct != fields:
-            faults.append(f"{file.name}: {fields}\n  but bridge/idl has {struct}")
+            faults.append(f"{file.name}: {fields}\n  but bridge/dds/idl has {struct}")
         if f"msg/{file.name}" not in listed:
             faults.append(f"{file.name} is not in the package's CMakeLists.txt")
     faults += [f"{name} is listed but not there" for name in sorted(listed) if not (package / name).exists()]
@@ -73,7 +73,7 @@ def main():
             faults.append(f"{name} has no {stem[1]}.msg")
     if len(messages) < 2:
         faults.append("no messages found")
-    print("\n".join(faults) or f"{len(messages)} messages agree with bridge/idl")
+    print("\n".join(faults) or f"{len(messages)} messages agree with bridge/dds/idl")
     return 1 if faults else 0
 
 

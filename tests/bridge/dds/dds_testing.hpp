@@ -42,7 +42,7 @@ inline std::string python() {
   return std::string(JINK_SOURCE_DIR) + "/.venv/bin/python";
 }
 inline std::string script(const std::string& name) {
-  return std::string(JINK_SOURCE_DIR) + "/tests/bridge/" + name;
+  return std::string(JINK_SOURCE_DIR) + "/tests/bridge/dds/" + name;
 }
 
 }  // namespace jink::bridge::testing

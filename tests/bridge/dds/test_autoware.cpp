@@ -24,7 +24,7 @@ using jink::Vec3;
 using jink::bridge::base::SteadyClock;
 using jink::bridge::cdr::decode_tracked_objects;
 using jink::bridge::dds::DdsAutowareReader;
-using jink::bridge::dds::DdsNode;
+using jink::bridge::dds::DdsParticipant;
 using jink::bridge::dds::Payload;
 using jink::bridge::dds::PayloadWriter;
 using jink::bridge::testing::ChildProcess;
@@ -197,8 +197,8 @@ TEST(AutowareObjects, AreNothingWhereALengthCannotBe) {
 TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
   const SteadyClock clock;
   const int domain = own_domain();
-  DdsNode node(domain);
-  DdsNode peer(domain);
+  DdsParticipant node(domain);
+  DdsParticipant peer(domain);
   DdsAutowareReader reader(node, clock);
   PayloadWriter writer(peer, jink::bridge::dds::kAutowareTopic, jink::bridge::dds::kAutowareType, {.reliable = true});
   ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
@@ -223,7 +223,7 @@ TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
 TEST(DdsAutowareReader, TakesAnotherVendorsWriter) {
   const SteadyClock clock;
   const int domain = own_domain();
-  DdsNode node(domain);
+  DdsParticipant node(domain);
   DdsAutowareReader reader(node, clock);
   ChildProcess peer({python(), script("cyclone_autoware.py"), "--domain", std::to_string(domain)});
   TrackMessage message;

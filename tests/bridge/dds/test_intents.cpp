@@ -74,7 +74,7 @@ class DdsIntentsTest : public ::testing::Test {
 
   base::SteadyClock clock_;
   int domain_ = own_domain();
-  DdsNode here_{domain_}, there_{domain_};
+  DdsParticipant here_{domain_}, there_{domain_};
   DdsIntents ear_{here_, clock_};
 };
 

@@ -25,7 +25,7 @@ using jink::bridge::base::SteadyClock;
 using jink::bridge::cdr::px4::decode_local_position;
 using jink::bridge::cdr::px4::LocalPosition;
 using jink::bridge::cdr::px4::LocalPositionFilter;
-using jink::bridge::dds::DdsNode;
+using jink::bridge::dds::DdsParticipant;
 using jink::bridge::dds::DdsVehicleLink;
 using jink::bridge::dds::DdsVehicleOptions;
 using jink::bridge::dds::Payload;
@@ -309,8 +309,8 @@ class Px4Dds : public ::testing::Test {
   const int domain_ = own_domain();
   ManualClock clock_;
   UnderlyingLink under_;
-  DdsNode node_{domain_};
-  DdsNode peer_{domain_, "autopilot"};
+  DdsParticipant node_{domain_};
+  DdsParticipant peer_{domain_, "autopilot"};
 };
 
 TEST_F(Px4Dds, TakesPositionsFromPx4sWritersAndTheRestFromTheLinkUnderneath) {
@@ -445,7 +445,7 @@ class Px4DdsOtherVendor : public ::testing::TestWithParam<int> {};
 TEST_P(Px4DdsOtherVendor, ExchangesStateAndSetpoints) {
   const SteadyClock clock;
   const int domain = own_domain();
-  DdsNode node(domain);
+  DdsParticipant node(domain);
   UnderlyingLink under;
   DdsVehicleLink link(under, node, clock, {.state = true, .setpoints = true, .name_space = "px4_1"});
   ChildProcess peer({python(), script("cyclone_px4.py"), "--domain", std::to_string(domain), "--namespace", "px4_1",

@@ -29,7 +29,7 @@ using jink::bridge::testing::eventually;
 using jink::bridge::testing::own_domain;
 using jink::bridge::tracking::TrackLimits;
 using jink::bridge::tracking::TrackMessage;
-using jink::bridge::tracking::TrackSieve;
+using jink::bridge::tracking::TrackValidator;
 using jink::planner::base::Track;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -189,14 +189,14 @@ TEST_F(DdsTracks, CarriesAThousandTracksInOneMessage) {
   }
 }
 
-TEST(TrackSieve, TakesNoMoreThanTheLimitFromOneMessage) {
+TEST(TrackValidator, TakesNoMoreThanTheLimitFromOneMessage) {
   TrackMessage m;
   constexpr std::size_t kSent = TrackLimits::kTracksPerMessage + 3;
-  TrackSieve sieve(m, kSent);
-  for (std::size_t i = 0; i < kSent; ++i) sieve.add(track(i));
+  TrackValidator validator(m, kSent);
+  for (std::size_t i = 0; i < kSent; ++i) validator.add(track(i));
   EXPECT_EQ(m.tracks.size(), TrackLimits::kTracksPerMessage);
   EXPECT_EQ(m.dropped, 3U);
-  EXPECT_NE(sieve.why().find("20003 tracks"), std::string::npos);
+  EXPECT_NE(validator.why().find("20003 tracks"), std::string::npos);
 }
 
 TEST_F(DdsTracks, ThrowsTheOldestAwayWhenNobodyPolls) {
@@ -253,7 +253,7 @@ TEST(DdsTrackReader, SurvivesMalformedPayloads) {
   const SteadyClock clock;
   const int domain = own_domain();
   DdsTrackReader reader(domain, clock);
-  jink::bridge::dds::DdsNode peer(domain);
+  jink::bridge::dds::DdsParticipant peer(domain);
   // A reliable writer matches the best-effort reader too.
   jink::bridge::dds::PayloadWriter writer(peer, jink::bridge::dds::kTracksTopic, jink::bridge::dds::kTracksType,
                                           {.reliable = true});

@@ -24,7 +24,7 @@
 namespace {
 
 using jink::bridge::dds::DdsEndpoint;
-using jink::bridge::dds::DdsNode;
+using jink::bridge::dds::DdsParticipant;
 using jink::bridge::dds::DdsTrackWriter;
 using jink::bridge::dds::Payload;
 using jink::bridge::dds::PayloadWriter;
@@ -130,7 +130,7 @@ TEST(DdsInspect, NamesFramesAndPayloadsThatCannotBeUsed) {
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_TRUE(has(check.finding, "base_link")) << check.finding;
   const Mission other = tracks_mission(own_domain());
-  DdsNode peer(other.dds_domain);
+  DdsParticipant peer(other.dds_domain);
   PayloadWriter broken(peer, jink::bridge::dds::kTracksTopic, jink::bridge::dds::kTracksType);
   check = find(inspect(other, [&] { (void)broken.write(Payload{0, 1, 0, 0, 7}); }), jink::bridge::dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
@@ -160,7 +160,7 @@ TEST(DdsInspect, NamesNearMatches) {
   };
   for (const auto& [topic, type] : cases) {
     const Mission mission = tracks_mission(own_domain());
-    DdsNode peer(mission.dds_domain, "perception");
+    DdsParticipant peer(mission.dds_domain, "perception");
     PayloadWriter writer(peer, topic, type);
     const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
     EXPECT_EQ(check.level, Check::Level::kMissing) << topic;
@@ -172,7 +172,7 @@ TEST(DdsInspect, NamesNearMatches) {
 
 TEST(DdsInspect, DoesNotTakeStrangersForNearMatches) {
   const Mission mission = tracks_mission(own_domain());
-  DdsNode peer(mission.dds_domain);
+  DdsParticipant peer(mission.dds_domain);
   PayloadWriter writer(peer, "rt/rosout", "rcl_interfaces::msg::dds_::Log_");
   const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
   EXPECT_EQ(check.finding, "no writer");
@@ -180,7 +180,7 @@ TEST(DdsInspect, DoesNotTakeStrangersForNearMatches) {
 
 TEST(DdsInspect, NamesAnotherTypeOnTheTopic) {
   const Mission mission = tracks_mission(own_domain());
-  DdsNode peer(mission.dds_domain, "perception");
+  DdsParticipant peer(mission.dds_domain, "perception");
   PayloadWriter writer(peer, jink::bridge::dds::kTracksTopic, "jink_msgs::msg::ObstacleTracks");
   const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);

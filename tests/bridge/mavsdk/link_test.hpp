@@ -46,7 +46,8 @@ class MavsdkLinkTest : public ::testing::Test {
     const std::string port = std::to_string(free_udp_port());
     link_ = std::make_unique<mavsdk::MavsdkLink>("udpin://127.0.0.1:" + port, clock_);
     const std::string root = JINK_SOURCE_DIR;
-    std::vector<std::string> arguments{root + "/.venv/bin/python", root + "/tests/bridge/px4_peer.py", "--port", port};
+    std::vector<std::string> arguments{root + "/.venv/bin/python", root + "/tests/bridge/mavsdk/px4_peer.py", "--port",
+                                       port};
     arguments.insert(arguments.end(), peer_options.begin(), peer_options.end());
     peer_ = std::make_unique<ChildProcess>(arguments);
     ASSERT_TRUE(link_->wait_for_autopilot(30.0));

@@ -42,8 +42,8 @@ Track exact(Motion motion, double t) {
 
 /// One track, watched for so long.
 struct Watched {
-  LearnedTrack learned;
-  LearnedRoom room;
+  MotionLearner learned;
+  LearnedBounds room;
   Track last;
   double t = 0.0;
   bool fits = true;  // are made
@@ -100,7 +100,7 @@ TEST(HarmonicFit, AsksForAFewSamples) {
   EXPECT_FALSE(fit_harmonics(samples, 0.1, 0.1).has_value());
 }
 
-TEST(LearnedTrack, ForecastsWhatSwings) {
+TEST(MotionLearner, ForecastsWhatSwings) {
   Watched watched;
   watched.watch(swing, 5.0);
   const auto forecast = watched.forecast(5.2);
@@ -112,7 +112,7 @@ TEST(LearnedTrack, ForecastsWhatSwings) {
     EXPECT_LT((path.position(ahead) - swing(5.2 + ahead)).norm(), 0.05) << ahead;
 }
 
-TEST(LearnedTrack, ForecastsATrefoilWithinOnePeriod) {
+TEST(MotionLearner, ForecastsATrefoilWithinOnePeriod) {
   Watched watched;
   watched.watch(trefoil, 6.0);
   const auto forecast = watched.forecast(6.0);
@@ -122,7 +122,7 @@ TEST(LearnedTrack, ForecastsATrefoilWithinOnePeriod) {
 }
 
 // Where measurements are exact, there is no need to wait for the better part of a period.
-TEST(LearnedTrack, ForecastsAnExactTrefoilSoon) {
+TEST(MotionLearner, ForecastsAnExactTrefoilSoon) {
   Watched watched;
   watched.watch(trefoil, 1.4);
   const auto forecast = watched.forecast(1.4);
@@ -132,25 +132,25 @@ TEST(LearnedTrack, ForecastsAnExactTrefoilSoon) {
   for (const double ahead : {0.5, 1.0}) EXPECT_LT((path.position(ahead) - trefoil(1.4 + ahead)).norm(), 0.15) << ahead;
 }
 
-TEST(LearnedTrack, PuzzlesUntilItIsUnderstood) {
+TEST(MotionLearner, PuzzlesUntilItIsUnderstood) {
   Watched watched;
   watched.watch(trefoil, 0.0);
-  EXPECT_TRUE(watched.learned.puzzling(0.0));
+  EXPECT_TRUE(watched.learned.unexplained(0.0));
   watched.t += kStep;
   watched.watch(trefoil, 1.4);
-  EXPECT_FALSE(watched.learned.puzzling(1.4));
+  EXPECT_FALSE(watched.learned.unexplained(1.4));
   Watched steady;
   steady.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 1.0);
-  EXPECT_FALSE(steady.learned.puzzling(1.0));
+  EXPECT_FALSE(steady.learned.unexplained(1.0));
 }
 
-TEST(LearnedTrack, PuzzlesForAWhileOnly) {
+TEST(MotionLearner, PuzzlesForAWhileOnly) {
   // Thrown about at random: never understood.
   Watched watched;
   RandomStream random(5);
   Vec3 push = Vec3::Zero();
   Track track;
-  for (double t = 0.0; t < LearnedTrack::kPuzzle + 0.5; t += kStep) {
+  for (double t = 0.0; t < MotionLearner::kLongestUnexplained + 0.5; t += kStep) {
     const Vec3 target(random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0), random.uniform(-8.0, 8.0));
     push += 0.5 * (target - push);
     track.acceleration = push;
@@ -158,17 +158,17 @@ TEST(LearnedTrack, PuzzlesForAWhileOnly) {
     track.position += kStep * track.velocity;
     watched.learned.observe(t, track, track, 1, watched.room);
     if (watched.learned.fit_due() <= t) watched.learned.fit(t, track, track);
-    EXPECT_EQ(watched.learned.puzzling(t), t < LearnedTrack::kPuzzle && push.norm() > 0.0) << t;
+    EXPECT_EQ(watched.learned.unexplained(t), t < MotionLearner::kLongestUnexplained && push.norm() > 0.0) << t;
   }
 }
 
-TEST(LearnedTrack, LeavesSteadyMotionAlone) {
+TEST(MotionLearner, LeavesSteadyMotionAlone) {
   Watched watched;
   watched.watch([](double t) { return Vec3(2.0 * t, 1.0, -0.5 * t); }, 6.0);
   EXPECT_FALSE(watched.forecast(6.0).has_value());
 }
 
-TEST(LearnedTrack, StopsBelievingWhenTheMotionIsAnother) {
+TEST(MotionLearner, StopsBelievingWhenTheMotionIsAnother) {
   Watched watched;
   watched.watch(swing, 5.0);
   ASSERT_TRUE(watched.forecast(5.0).has_value());
@@ -186,7 +186,7 @@ Vec3 bouncing(double t, double y) {
   return {0.5 * y, phase > 2.0 ? 3.0 - phase : phase - 1.0, 2.0};
 }
 
-TEST(LearnedTrack, KnowsWhereItTurnedBefore) {
+TEST(MotionLearner, KnowsWhereItTurnedBefore) {
   Watched watched;
   watched.watch([](double t) { return bouncing(t, 0.03); }, 4.0);  // turned at 0.97 and at 2.97
   const auto forecast = watched.forecast(4.0);
@@ -197,7 +197,7 @@ TEST(LearnedTrack, KnowsWhereItTurnedBefore) {
 }
 
 // The third time round, plain prediction no longer counts, until the track passes.
-TEST(LearnedTrack, ReliesOnATurnThatCameTwice) {
+TEST(MotionLearner, ReliesOnATurnThatCameTwice) {
   Watched watched;
   watched.fits = false;
   watched.watch([](double t) { return bouncing(t, 0.03); }, 6.0);  // at 0.97, 2.97 and 4.97
@@ -218,8 +218,8 @@ TEST(LearnedTrack, ReliesOnATurnThatCameTwice) {
 
 /// What the realistic tier's sensor makes of a motion, filtered as the track table does.
 struct Noisy {
-  LearnedTrack learned;
-  LearnedRoom room;
+  MotionLearner learned;
+  LearnedBounds room;
   ImmFilter filter;
   Track last;
   RandomStream random{3};
@@ -253,7 +253,7 @@ struct Noisy {
 };
 
 // In a crowd the fits come in turn, each track's more than a trial apart. What has proved right stays believed between.
-TEST(LearnedTrack, IsBelievedBetweenFitsThatAreRare) {
+TEST(MotionLearner, IsBelievedBetweenFitsThatAreRare) {
   Noisy noisy;
   int believed = 0, asked = 0;
   for (double t = 0.0; t < 24.0; t += kStep) {
@@ -267,7 +267,7 @@ TEST(LearnedTrack, IsBelievedBetweenFitsThatAreRare) {
 }
 
 // Every measurement counts: of 64 single ones, the rest left out, the forecast would be off by 0.051 m.
-TEST(LearnedTrack, ForecastsMoreExactlyThanItIsMeasured) {
+TEST(MotionLearner, ForecastsMoreExactlyThanItIsMeasured) {
   Noisy noisy;
   double squares = 0.0;
   int asked = 0;
@@ -283,8 +283,8 @@ TEST(LearnedTrack, ForecastsMoreExactlyThanItIsMeasured) {
   EXPECT_LT(std::sqrt(squares / asked), 0.045);
 }
 
-TEST(LearnedRoom, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
-  LearnedRoom room;
+TEST(LearnedBounds, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
+  LearnedBounds room;
   room.saw({0, 2.6, 0}, 0.4);
   room.turned(1, 1, true, 3.0);
   EXPECT_EQ(room.bounds(0.4).max.y(), planner::base::kInfinity);  // one alone proves nothing
@@ -297,17 +297,17 @@ TEST(LearnedRoom, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
   EXPECT_EQ(room.bounds(0.4).max.y(), planner::base::kInfinity);
 }
 
-TEST(LearnedTrack, TurnsWhereOthersTurned) {
-  LearnedRoom room;
+TEST(MotionLearner, TurnsWhereOthersTurned) {
+  LearnedBounds room;
   for (const std::uint64_t name : {1U, 2U}) {
-    LearnedTrack learned;
+    MotionLearner learned;
     for (double t = 0.0; t < 1.5; t += kStep) {
       const double y = 0.03 * static_cast<double>(name);
       const Track track = exact([y](double s) { return bouncing(s, y); }, t);
       learned.observe(t, track, track, name, room);
     }
   }
-  LearnedTrack third;
+  MotionLearner third;
   const Track track = exact([](double t) { return bouncing(t, -0.5); }, 0.0);
   third.observe(0.0, track, track, 3, room);
   const auto forecast = third.forecast(0.0, 0.0, track, room);

@@ -73,9 +73,9 @@ struct Hearing {
     team.listen(now, state);
     return team.paths(now, now);
   }
-  bool news(double now, const std::string& name) {
-    const auto all = team.news(now);
-    return std::any_of(all.begin(), all.end(), [&](const Team::News& n) { return n.name == name; });
+  bool take_notices(double now, const std::string& name) {
+    const auto all = team.take_notices(now);
+    return std::any_of(all.begin(), all.end(), [&](const Team::Notice& n) { return n.name == name; });
   }
 };
 
@@ -114,7 +114,7 @@ TEST(Team, CountsAPathFromItsStamp) {
   EXPECT_NEAR(paths[0].age, 0.3, 1e-12);
   EXPECT_EQ(paths[0].radius, 0.4);
   EXPECT_EQ(paths[0].margin, 0.2);
-  EXPECT_TRUE(h.news(10.0, "team_vehicle"));
+  EXPECT_TRUE(h.take_notices(10.0, "team_vehicle"));
   // A plan that begins 0.2 s later.
   EXPECT_NEAR((h.team.paths(10.0, 10.2)[0].position(1.0) - Vec3(7.0, 0, 5)).norm(), 0.0, 1e-9);
 }
@@ -128,7 +128,7 @@ TEST(Team, LearnsAClockThatIsAnHourOff) {
     EXPECT_NEAR(paths[0].age, i == 3 ? 0.15 : 0.0, 1e-9);  // only what exceeds the smallest is delay
     EXPECT_NEAR(paths[0].margin, 0.2 + 0.1 * 2.0, 1e-9);   // the rest, at 2 m/s, is not known
   }
-  EXPECT_TRUE(h.news(11.0, "team_clock"));
+  EXPECT_TRUE(h.take_notices(11.0, "team_clock"));
 }
 
 TEST(Team, LeavesOutWhatWasOvertakenAndWhatIsTooOld) {
@@ -138,7 +138,7 @@ TEST(Team, LeavesOutWhatWasOvertakenAndWhatIsTooOld) {
   const auto overtaken = h.hear(10.25, message(10.25, 0.3, intent()));
   EXPECT_NEAR(overtaken[0].position(0.0).y(), 1.0, 1e-9);
   h.hear(10.3, message(10.3, 5.0, intent()));
-  EXPECT_TRUE(h.news(10.3, "team_late"));
+  EXPECT_TRUE(h.take_notices(10.3, "team_late"));
   EXPECT_NEAR(h.team.paths(10.3, 10.3)[0].position(0.0).y(), 1.0, 1e-9);
 }
 
@@ -159,31 +159,31 @@ TEST(Team, DropsAndReportsWhatCannotBePlaced) {
   Intent lost = intent();
   lost.origin.reset();
   EXPECT_TRUE(h.hear(10.0, message(10.0, 0.0, lost)).empty());
-  EXPECT_TRUE(h.news(10.0, "team_unplaced"));
+  EXPECT_TRUE(h.take_notices(10.0, "team_unplaced"));
   h.hear(10.3, message(10.3, 0.0, lost));
-  EXPECT_FALSE(h.news(10.3, "team_unplaced"));  // once a second
+  EXPECT_FALSE(h.take_notices(10.3, "team_unplaced"));  // once a second
   vehicle::VehicleState blind = own();
   blind.origin.reset();
   EXPECT_TRUE(h.hear(11.0, message(11.0, 0.0, intent()), blind).empty());
-  EXPECT_TRUE(h.news(11.0, "team_unplaced"));
+  EXPECT_TRUE(h.take_notices(11.0, "team_unplaced"));
   EXPECT_EQ(h.team.unplaced(), 3U);
 }
 
 TEST(Team, DoesNotHearItself) {
   Hearing h;
   EXPECT_TRUE(h.hear(10.0, message(10.0, 0.0, intent(1), kWriter)).empty());
-  EXPECT_FALSE(h.news(10.0, "team_same_id"));
+  EXPECT_FALSE(h.take_notices(10.0, "team_same_id"));
 }
 
 TEST(Team, NoticesTwoOfTheSameSystem) {
   Hearing h;
   h.hear(10.0, message(10.0, 0.0, intent(2), 100));
-  EXPECT_FALSE(h.news(10.0, "team_same_id"));
+  EXPECT_FALSE(h.take_notices(10.0, "team_same_id"));
   EXPECT_EQ(h.hear(10.1, message(10.1, 0.0, intent(2), 101)).size(), 2U);  // both are avoided
-  EXPECT_TRUE(h.news(10.1, "team_same_id"));
+  EXPECT_TRUE(h.take_notices(10.1, "team_same_id"));
   Hearing mine;
   mine.hear(10.0, message(10.0, 0.0, intent(1), 100));
-  EXPECT_TRUE(mine.news(10.0, "team_same_id"));
+  EXPECT_TRUE(mine.take_notices(10.0, "team_same_id"));
 }
 
 TEST(Team, TakesASilentOneToHangWhereItsPathEndedAndForgetsItLater) {
@@ -195,13 +195,13 @@ TEST(Team, TakesASilentOneToHangWhereItsPathEndedAndForgetsItLater) {
   EXPECT_GT(h.team.paths(11.9, 11.9)[0].position_sigma, after);
   h.team.listen(11.9, own(11.9));
   EXPECT_EQ(h.team.vehicles(), 1U);
-  EXPECT_FALSE(h.news(11.9, "team_lost"));
+  EXPECT_FALSE(h.take_notices(11.9, "team_lost"));
   h.team.listen(12.1, own(12.1));
-  EXPECT_TRUE(h.news(12.1, "team_lost"));
-  EXPECT_FALSE(h.news(13.5, "team_lost"));
+  EXPECT_TRUE(h.take_notices(12.1, "team_lost"));
+  EXPECT_FALSE(h.take_notices(13.5, "team_lost"));
   ASSERT_EQ(h.team.paths(30.0, 30.0).size(), 1U);
   EXPECT_EQ(h.team.paths(30.0, 30.0)[0].until, planner::base::kInfinity);  // it gives no way
-  h.team.listen(10.1 + Team::kHangs, own(10.1 + Team::kHangs));
+  h.team.listen(10.1 + Team::kForgetPeer, own(10.1 + Team::kForgetPeer));
   EXPECT_EQ(h.team.vehicles(), 0U);
   EXPECT_TRUE(h.team.paths(71.0, 71.0).empty());
 }
@@ -230,7 +230,7 @@ TEST(Team, ListensToSoManyAndReportsTheRest) {
     h.hear(10.0, message(10.0, 0.0, intent(static_cast<std::uint32_t>(writer)), writer));
   }
   EXPECT_EQ(h.team.vehicles(), Team::kMostVehicles);
-  EXPECT_TRUE(h.news(10.0, "team_crowded"));
+  EXPECT_TRUE(h.take_notices(10.0, "team_crowded"));
 }
 
 setpoints::SetpointStream stream_on(const TimedPath& path) {
@@ -311,9 +311,9 @@ TEST(Team, SaysNothingBeforeItKnowsItsPlaceAndReportsWhatCannotBeSent) {
   EXPECT_TRUE(h.transport.sent.empty());
   h.transport.works = false;
   h.team.tell(10.0, own(), nullptr, 2);
-  EXPECT_TRUE(h.news(10.0, "team_untold"));
+  EXPECT_TRUE(h.take_notices(10.0, "team_untold"));
   h.transport.told = {3, "a payload that is no jink_msgs/Intent"};
-  EXPECT_TRUE(h.news(11.0, "team_refused"));
+  EXPECT_TRUE(h.take_notices(11.0, "team_refused"));
 }
 
 /// A companion in the air, engaged, with a team.

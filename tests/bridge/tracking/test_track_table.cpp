@@ -172,7 +172,7 @@ TEST(TrackTable, TheSamePictureAgainAndAgainGoesStale) {
   TrackTable table(kCoast);
   feed(table, 10.0, 12.0, 0.03, 0.0);
   for (double t = 12.0; t < 20.0; t += 0.05) table.ingest(message(t, t - 11.92, {track(1, {11.92, 0, 0}, {1, 0, 0})}));
-  EXPECT_LE(table.newest_message(), 11.92 + StampClock::kLongestDelay + 0.1);
+  EXPECT_LE(table.newest_message(), 11.92 + ClockOffsetEstimator::kLongestDelay + 0.1);
   EXPECT_TRUE(table.predict(20.0, 1.0).empty());
 }
 
@@ -287,7 +287,7 @@ TEST(TrackTable, CountsTheWritersThatLive) {
   EXPECT_EQ(table.live_writers(10.5, 1.0), 2);
   EXPECT_EQ(table.live_writers(19.6, 1.0), 1);
   TrackMessage aircraft = message(20.0, 0.0, {}, 3);
-  aircraft.watches = false;
+  aircraft.sends_when_empty = false;
   table.ingest(aircraft);
   EXPECT_EQ(table.live_writers(20.0, 1.0), 1);
 }

@@ -242,7 +242,7 @@ TEST(MetObstaclesOnKnownPaths, NeverMissesAny) {
     KnownPath path = random_path(random, 1, 20.0);
     path.position_sigma = random.uniform(0.0, 0.2);
     path.velocity_sigma = random.uniform(0.0, 0.1);
-    horizon::MetObstacles obstacles;
+    horizon::NearbyObstacles obstacles;
     obstacles.build({}, {&path, 1}, clearance, kStep, where);
     for (int n = 0; n < kSteps; ++n) {
       const auto during = obstacles.during(n);
@@ -259,7 +259,7 @@ TEST(MetObstaclesOnKnownPaths, NeverMissesAny) {
           continue;
         }
         ++met;
-        const horizon::MetObstacle& o = during[0];
+        const horizon::NearbyObstacle& o = during[0];
         const double strays = (truth - (o.from + share * (o.to - o.from))).norm();
         ASSERT_LE(path.radius + path.margin + clearance.hard + strays, o.hard + 1e-9) << seed << " step " << n;
         ASSERT_GE(o.soft, o.hard);
@@ -277,15 +277,15 @@ TEST(MetObstaclesOnKnownPaths, SeesAStraightOneAsTheEquivalentTrack) {
     const base::Track track = random_track(random, 1);
     const KnownPath path = straight(track);
     const std::vector<base::Box> where = growing({4, 0, 2}, 60, 0.1, 3.0);
-    horizon::MetObstacles of_track;
-    horizon::MetObstacles of_path;
+    horizon::NearbyObstacles of_track;
+    horizon::NearbyObstacles of_path;
     of_track.build({&track, 1}, {}, clearance, 0.1, where);
     of_path.build({}, {&path, 1}, clearance, 0.1, where);
     for (int n = 0; n < 60; ++n) {
       ASSERT_EQ(of_track.during(n).size(), of_path.during(n).size()) << seed << " step " << n;
       if (of_track.during(n).empty()) continue;
-      const horizon::MetObstacle& a = of_track.during(n)[0];
-      const horizon::MetObstacle& b = of_path.during(n)[0];
+      const horizon::NearbyObstacle& a = of_track.during(n)[0];
+      const horizon::NearbyObstacle& b = of_path.during(n)[0];
       EXPECT_NEAR((a.from - b.from).norm(), 0.0, 1e-9);
       EXPECT_NEAR((a.to - b.to).norm(), 0.0, 1e-9);
       EXPECT_NEAR(a.hard, b.hard, 1e-9);
@@ -300,7 +300,7 @@ TEST(MetObstaclesOnKnownPaths, RegardsItUpToItsTimeAndGrowsItAfterItsEnd) {
   path.radius = 0.5;
   path.until = 3.05;
   const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.8, base::kInfinity};
-  horizon::MetObstacles obstacles;
+  horizon::NearbyObstacles obstacles;
   obstacles.build({}, {&path, 1}, clearance, 0.1, growing(kZero, 60, 0.1, 3.0));
   EXPECT_EQ(obstacles.obstacles(), 1U);
   EXPECT_EQ(obstacles.during(30).size(), 1U);
@@ -361,14 +361,14 @@ TEST(ManoeuvresOfKnownPaths, LeadPastAnEncounterAsPastTheEquivalentTrack) {
   horizon::PathRequest r = request();
   horizon::PathProblem problem{base::HorizonSettings{}};
   problem.prepare(r);
-  const base::TimedPath undisturbed = problem.motion(std::vector<double>(18, 0.0));
+  const base::TimedPath unobstructed = problem.motion(std::vector<double>(18, 0.0));
   const std::vector<double> times{1, 2, 3, 4, 5, 6};
   r.tracks = {&track, 1};
-  const auto expected = horizon::manoeuvres(r, undisturbed, times, 0.4);
+  const auto expected = horizon::initial_paths(r, unobstructed, times, 0.4);
   const KnownPath path = straight(track);
   r.tracks = {};
   r.paths = {&path, 1};
-  const auto found = horizon::manoeuvres(r, undisturbed, times, 0.4);
+  const auto found = horizon::initial_paths(r, unobstructed, times, 0.4);
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (std::size_t k = 0; k < times.size(); ++k) {
@@ -376,7 +376,7 @@ TEST(ManoeuvresOfKnownPaths, LeadPastAnEncounterAsPastTheEquivalentTrack) {
     }
   }
   r.paths = {};
-  EXPECT_LT(horizon::manoeuvres(r, undisturbed, times, 0.4).size(), found.size());
+  EXPECT_LT(horizon::initial_paths(r, unobstructed, times, 0.4).size(), found.size());
 }
 
 /// One that comes head-on, then turns across the line and back: no track could say so.

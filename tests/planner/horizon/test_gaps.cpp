@@ -52,9 +52,9 @@ PathRequest request(const std::vector<base::Track>& tracks) {
   return r;
 }
 
-std::vector<Opening> look(const std::vector<base::Track>& tracks, double t, std::size_t most) {
+std::vector<Gap> look(const std::vector<base::Track>& tracks, double t, std::size_t most) {
   const PathRequest r = request(tracks);
-  return openings(r, geometry::PathFrame(r.position, r.target), kMiddle, t, kClearance, most);
+  return find_gaps(r, geometry::PathFrame(r.position, r.target), kMiddle, t, kClearance, most);
 }
 
 TEST(Openings, AreWhereTheHoleIs) {
@@ -94,7 +94,7 @@ TEST(Openings, AreTheNearestFirstAndApart) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_TRUE(request(tracks).volume.contains(found[i].position));
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GE((found[i].position - found[j].position).norm(), kOpeningsApart);
+      EXPECT_GE((found[i].position - found[j].position).norm(), kGapSpacing);
     }
   }
 }
@@ -103,11 +103,11 @@ TEST(Openings, AreTheNearestFirstAndApart) {
 TEST(Openings, AreFlownThroughByAManoeuvre) {
   const std::vector<base::Track> tracks = wall({{2.6, 1.7}});
   const PathRequest r = request(tracks);
-  base::TimedPath undisturbed;
-  for (int i = 0; i <= 60; ++i) undisturbed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
+  base::TimedPath unobstructed;
+  for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
   const std::vector<double> times{1, 2, 3, 4, 5, 6};
   int through = 0;
-  for (const base::TimedPath& path : manoeuvres(r, undisturbed, times, kClearance)) {
+  for (const base::TimedPath& path : initial_paths(r, unobstructed, times, kClearance)) {
     if (path.back().position.x() < 9.5) continue;
     bool free = true;
     for (double t = 1.0; t <= 6.0; t += 0.05) {
@@ -128,9 +128,10 @@ TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
   r.volume.max.x() = 11.5;
   PathProblem problem{base::HorizonSettings{}};
   problem.prepare(r);
-  const base::TimedPath undisturbed = problem.motion(std::vector<double>(18, 0.0));
+  const base::TimedPath unobstructed = problem.motion(std::vector<double>(18, 0.0));
   int through = 0;
-  for (const base::TimedPath& path : manoeuvres(r, undisturbed, std::vector<double>{1, 2, 3, 4, 5, 6}, kClearance)) {
+  for (const base::TimedPath& path :
+       initial_paths(r, unobstructed, std::vector<double>{1, 2, 3, 4, 5, 6}, kClearance)) {
     const bool aside = std::any_of(path.begin(), path.end(), [](const base::TimedPoint& point) {
       return std::abs(point.position.x() - 9.0) < 1.0 && (point.position - Vec3(9, 2.6, 1.7)).norm() < 1.0;
     });
@@ -144,9 +145,9 @@ TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
 TEST(Openings, AreWhereTheWayLeadsOn) {
   const auto on = [](const std::vector<base::Track>& tracks) {
     const PathRequest r = request(tracks);
-    base::TimedPath undisturbed;
-    for (int i = 0; i <= 60; ++i) undisturbed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
-    return way_on(r, undisturbed, 6.0, kClearance);
+    base::TimedPath unobstructed;
+    for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
+    return gap_ahead(r, unobstructed, 6.0, kClearance);
   };
   const std::optional<Vec3> place = on(wall({{2.6, 1.7}}));
   ASSERT_TRUE(place);

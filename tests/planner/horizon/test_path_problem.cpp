@@ -90,7 +90,7 @@ Straightness straightness(const base::TimedPath& path, const geometry::PathFrame
 }
 
 /// The motion of zero variables from rest, and from it the cruise speed: slower where it climbs steeply.
-Straightness undisturbed(const Vec3& target, double& cruise, base::TimedPath& path) {
+Straightness unobstructed(const Vec3& target, double& cruise, base::TimedPath& path) {
   PathProblem problem{base::HorizonSettings{}};
   const PathRequest r = request(target);
   problem.prepare(r);
@@ -108,7 +108,7 @@ TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
   for (const Vec3& target : kTargets) {
     double cruise = 0.0;
     base::TimedPath path;
-    const Straightness s = undisturbed(target, cruise, path);
+    const Straightness s = unobstructed(target, cruise, path);
     EXPECT_LT(s.aside, 1e-9);
     EXPECT_LT(s.off_cruise, 0.05);
     EXPECT_LT(s.fastest, 1.13 * cruise);
@@ -119,13 +119,13 @@ TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
   }
 }
 
-// "With all of them 0 it is undisturbed flight": straight on, at cruise speed, braking for the target, without the
+// "With all of them 0 it is unobstructed flight": straight on, at cruise speed, braking for the target, without the
 // follower's overshoot.
 TEST(PathProblem, ZeroVariablesDoNotOvershootSpeedOrTarget) {
   for (const Vec3& target : kTargets) {
     double cruise = 0.0;
     base::TimedPath path;
-    const Straightness s = undisturbed(target, cruise, path);
+    const Straightness s = unobstructed(target, cruise, path);
     EXPECT_LE(s.fastest, cruise + 1e-6);
     EXPECT_LE(s.overshoot, 1e-6);
     EXPECT_LE(s.backward, 1e-6);
@@ -536,7 +536,7 @@ TEST(PathProblem, ImitatedMotionStaysClose) {
     const std::vector<double> x = random_variables(random, problem, 0.15);
     const base::TimedPath path = problem.motion(x);
     std::vector<double> y(x.size());
-    problem.imitate(path, y);
+    problem.encode_path(path, y);
     const base::TimedPath again = problem.motion(y);
     for (int n = 0; n <= problem.steps(); ++n, ++count) {
       const double off = (base::sample(path, 0.1 * n).position - base::sample(again, 0.1 * n).position).norm();
@@ -554,11 +554,11 @@ TEST(PathProblem, ImitationIsTheOffsetOverTheReach) {
   PathRequest r = request();
   problem.prepare(r);
   std::vector<double> x = zeros(problem);
-  problem.imitate({{0, {0, 2, 3}, Vec3::Zero(), Vec3::Zero()}}, x);
+  problem.encode_path({{0, {0, 2, 3}, Vec3::Zero(), Vec3::Zero()}}, x);
   EXPECT_NEAR(x[1], 2.0 / 5.0, 1e-12);
   EXPECT_NEAR(x[2], 1.0 / 5.0, 1e-12);
   EXPECT_NEAR(x[4], 2.0 / 6.0, 1e-12);
-  EXPECT_LT(x[0], 0.0);  // it stays behind undisturbed flight
+  EXPECT_LT(x[0], 0.0);  // it stays behind unobstructed flight
   for (const double value : x) EXPECT_LE(std::abs(value), 1.0);
 }
 

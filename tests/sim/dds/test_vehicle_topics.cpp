@@ -15,7 +15,7 @@
 namespace {
 
 using jink::Vec3;
-using jink::bridge::dds::DdsNode;
+using jink::bridge::dds::DdsParticipant;
 using jink::bridge::dds::DdsVehicleLink;
 using jink::bridge::dds::Payload;
 using jink::bridge::dds::PayloadWriter;
@@ -24,11 +24,11 @@ using jink::bridge::testing::ManualClock;
 using jink::bridge::testing::own_domain;
 using jink::bridge::vehicle::Setpoint;
 using jink::bridge::vehicle::VehicleState;
-using jink::sim::dds::SimDds;
+using jink::sim::dds::VehicleTopics;
 using jink::sim::vehicle::Autopilot;
 
-TEST(JumpWatch, TellsAJumpFromMotion) {
-  jink::sim::dds::JumpWatch watch;
+TEST(EstimateJumpDetector, TellsAJumpFromMotion) {
+  jink::sim::dds::EstimateJumpDetector watch;
   jink::sim::vehicle::Motion motion;
   motion.velocity = {2.0, 0.0, 0.0};
   EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
@@ -77,10 +77,10 @@ class SimulatedDds : public ::testing::Test {
   const int domain_ = own_domain();
   ManualClock clock_;
   NoLink under_;
-  DdsNode vehicle_{domain_, "simulated autopilot"};
-  DdsNode companion_{domain_};
+  DdsParticipant vehicle_{domain_, "simulated autopilot"};
+  DdsParticipant companion_{domain_};
   Autopilot autopilot_{airborne()};
-  SimDds dds_{vehicle_, "px4_3"};
+  VehicleTopics dds_{vehicle_, "px4_3"};
 };
 
 TEST_F(SimulatedDds, FliesOnDdsAlone) {

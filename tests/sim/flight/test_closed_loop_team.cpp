@@ -145,7 +145,7 @@ TEST(ClosedLoopTeam, StartsThatOverlapAreBlocked) {
 }
 
 /// Both go straight from their starts at these velocities.
-bool watched(FlightJudge& judge, const config::Scenario& scenario, const Vec3& v0, const Vec3& v1, double until) {
+bool watched(ClosedLoopJudge& judge, const config::Scenario& scenario, const Vec3& v0, const Vec3& v1, double until) {
   for (int step = 0; 0.1 * step <= until + 1e-9; ++step) {
     const double t = 0.1 * step;
     const world::VehicleTruth now[] = {{scenario.start + t * v0, v0}, {scenario.vehicles[0].start + t * v1, v1}};
@@ -155,9 +155,9 @@ bool watched(FlightJudge& judge, const config::Scenario& scenario, const Vec3& v
 }
 
 // 12 m apart, 0.6 m together in radii, closing at 4 m/s: at 2.85 s.
-TEST(FlightJudge, VehiclesThatMeetHaveBothHit) {
+TEST(ClosedLoopJudge, VehiclesThatMeetHaveBothHit) {
   const world::World world(swapping());
-  FlightJudge judge(world);
+  ClosedLoopJudge judge(world);
   EXPECT_TRUE(watched(judge, world.scenario(), {2, 0, 0}, {-2, 0, 0}, 5.0));
   EXPECT_TRUE(judge.ended());
   const ClosedLoopResult result = judge.result({{}, {}});
@@ -167,18 +167,18 @@ TEST(FlightJudge, VehiclesThatMeetHaveBothHit) {
   EXPECT_LT(result.min_clearance, 0.0);
 }
 
-TEST(FlightJudge, PassingAtAMetreIsNotedButNotAHit) {
+TEST(ClosedLoopJudge, PassingAtAMetreIsNotedButNotAHit) {
   config::Scenario scenario = swapping();
   scenario.vehicles[0].start.y() = 1.6;
   const world::World world(scenario);
-  FlightJudge judge(world);
+  ClosedLoopJudge judge(world);
   EXPECT_FALSE(watched(judge, scenario, {2, 0, 0}, {-2, 0, 0}, 5.0));
   EXPECT_NEAR(judge.result({{}, {}}).min_clearance, 1.0, 1e-9);
 }
 
-TEST(FlightJudge, WhoIsDoneCanStillBeHit) {
+TEST(ClosedLoopJudge, WhoIsDoneCanStillBeHit) {
   const world::World world(swapping());
-  FlightJudge judge(world);
+  ClosedLoopJudge judge(world);
   judge.close(0);
   EXPECT_TRUE(watched(judge, world.scenario(), Vec3::Zero(), {-2, 0, 0}, 8.0));
   const ClosedLoopResult result = judge.result({{}, {}});
@@ -187,11 +187,11 @@ TEST(FlightJudge, WhoIsDoneCanStillBeHit) {
   EXPECT_NEAR(result.vehicles[1].flight.path_length, 11.4, 0.21);  // to the contact, and a step at most
 }
 
-TEST(FlightJudge, OneThatLeavesTheWorldEndsIt) {
+TEST(ClosedLoopJudge, OneThatLeavesTheWorldEndsIt) {
   config::Scenario scenario = swapping();
   scenario.world = planner::base::Box{{-1, -1, 0}, {13, 1, 5}};
   const world::World world(scenario);
-  FlightJudge judge(world);
+  ClosedLoopJudge judge(world);
   EXPECT_TRUE(watched(judge, scenario, Vec3::Zero(), {0, 1, 0}, 5.0));
   const ClosedLoopResult result = judge.result({{}, {}});
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kLeftWorld);

@@ -48,10 +48,11 @@ TEST(SweepOfSpheres, TakesTheEndsWhereTheyPartOrStand) {
               1e-12);
 }
 
-TEST(Judge, VehiclesThatMeetWithinAStepHaveHitEachOther) {
+TEST(SimulatorJudge, VehiclesThatMeetWithinAStepHaveHitEachOther) {
   const world::World world = world_with({});
   const std::vector<Vec3> begin{{0, 0, 1}, {10, 0, 1}, {0, 5, 1}};
-  Judge judge(world, {vehicle(begin[0], begin[1]), vehicle(begin[1], begin[0]), vehicle(begin[2], {9, 9, 9})}, begin);
+  SimulatorJudge judge(world, {vehicle(begin[0], begin[1]), vehicle(begin[1], begin[0]), vehicle(begin[2], {9, 9, 9})},
+                       begin);
   const std::vector<JudgedVehicle> now{at({10, 0, 1}), at({0, 0, 1}), at({0, 5, 1})};
   const std::vector<Verdict> verdicts = judge.watch(0.0, false, now);
   ASSERT_EQ(verdicts.size(), 2U);
@@ -68,10 +69,10 @@ TEST(Judge, VehiclesThatMeetWithinAStepHaveHitEachOther) {
   EXPECT_TRUE(judge.watch(1.0, false, now).empty());
 }
 
-TEST(Judge, AWreckCanStillBeHitByAnother) {
+TEST(SimulatorJudge, AWreckCanStillBeHitByAnother) {
   const world::World world = world_with({ball(0.5, {0, 0, 0})});
   const std::vector<Vec3> begin{{2, 0, 0}, {2, 4, 0}};
-  Judge judge(world, {vehicle(begin[0], {9, 0, 0}), vehicle(begin[1], {9, 0, 0})}, begin);
+  SimulatorJudge judge(world, {vehicle(begin[0], {9, 0, 0}), vehicle(begin[1], {9, 0, 0})}, begin);
   std::vector<JudgedVehicle> now{at({0.7, 0, 0}), at({2, 4, 0})};
   std::vector<Verdict> verdicts = judge.watch(0.1, true, now);
   ASSERT_EQ(verdicts.size(), 1U);
@@ -83,12 +84,12 @@ TEST(Judge, AWreckCanStillBeHitByAnother) {
   EXPECT_EQ(verdicts[0].reason.find("hit vehicle 0"), 0U) << verdicts[0].reason;
 }
 
-TEST(Judge, UsesEachVehiclesOwnRadius) {
+TEST(SimulatorJudge, UsesEachVehiclesOwnRadius) {
   const world::World world = world_with({ball(0.5, {0, 0, 0})});
   config::ScenarioVehicle big = vehicle({1.2, 0, 0}, {9, 0, 0});
   big.vehicle.radius = 0.8;
   const std::vector<Vec3> begin{{0, 1.2, 0}, big.start};
-  Judge judge(world, {vehicle(begin[0], {9, 0, 0}), big}, begin);
+  SimulatorJudge judge(world, {vehicle(begin[0], {9, 0, 0}), big}, begin);
   const std::vector<JudgedVehicle> now{at(begin[0]), at(begin[1])};
   const std::vector<Verdict> verdicts = judge.watch(0.0, false, now);
   ASSERT_EQ(verdicts.size(), 1U);
@@ -97,10 +98,10 @@ TEST(Judge, UsesEachVehiclesOwnRadius) {
   EXPECT_NEAR(judge.reports()[1].min_clearance, -0.1, 1e-9);
 }
 
-TEST(Judge, CountsProgressOnlyWhileTheClockRuns) {
+TEST(SimulatorJudge, CountsProgressOnlyWhileTheClockRuns) {
   const world::World world = world_with({}, planner::base::Box{{-5, -5, 0}, {5, 5, 5}});
   const std::vector<Vec3> begin{{0, 0, 1}};
-  Judge judge(world, {vehicle(begin[0], {3, 0, 1})}, begin);
+  SimulatorJudge judge(world, {vehicle(begin[0], {3, 0, 1})}, begin);
   EXPECT_TRUE(judge.watch(0.0, false, std::vector{at({3, 0, 1})}).empty());  // at the target, but too early
   EXPECT_TRUE(judge.watch(1.0, true, std::vector{at({1, 0, 1})}).empty());
   const std::vector<Verdict> verdicts = judge.watch(2.0, true, std::vector{at({2.6, 0, 1})});
@@ -111,17 +112,17 @@ TEST(Judge, CountsProgressOnlyWhileTheClockRuns) {
   EXPECT_EQ(judge.reports()[0].flight.straight_length, 3.0);
 }
 
-TEST(Judge, LeavingTheWorldCountsInOffboardAlone) {
+TEST(SimulatorJudge, LeavingTheWorldCountsInOffboardAlone) {
   const world::World world = world_with({}, planner::base::Box{{-5, -5, 0}, {5, 5, 5}});
   const std::vector<Vec3> begin{{0, 0, 1}, {0, 3, 1}};
-  Judge judge(world, {vehicle(begin[0], {3, 0, 1}), vehicle(begin[1], {3, 3, 1})}, begin);
+  SimulatorJudge judge(world, {vehicle(begin[0], {3, 0, 1}), vehicle(begin[1], {3, 3, 1})}, begin);
   const std::vector<Verdict> verdicts = judge.watch(1.0, true, std::vector{at({0, 0, 6}, false), at({0, 3, 6})});
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].vehicle, 1);
   EXPECT_EQ(verdicts[0].outcome, bridge::supervisor::Outcome::kLeftWorld);
 }
 
-TEST(Judge, TheWorstOutcomeIsTheTeams) {
+TEST(SimulatorJudge, TheWorstOutcomeIsTheTeams) {
   const auto of = [](std::initializer_list<bridge::supervisor::Outcome> outcomes) {
     std::vector<VehicleReport> reports;
     for (const bridge::supervisor::Outcome outcome : outcomes) reports.emplace_back().flight.outcome = outcome;

@@ -29,7 +29,7 @@ struct Packet {
 std::vector<Packet> read_tlog(const std::string& name) {
   constexpr std::size_t kStampSize = 8;
   constexpr std::size_t kFrameOverhead = 12;  // without a signature
-  std::ifstream file(JINK_SOURCE_DIR "/tests/sim/data/" + name, std::ios::binary);
+  std::ifstream file(JINK_SOURCE_DIR "/tests/sim/mavlink/data/" + name, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::vector<Packet> packets;
   std::uint64_t first = 0;

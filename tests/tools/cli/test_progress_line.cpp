@@ -10,21 +10,21 @@ namespace jink::tools::cli {
 namespace {
 
 TEST(LiveText, TellsWhatIsKnownAndNoMore) {
-  LiveStatus status;
+  ProgressStatus status;
   status.t = 12.34;
-  EXPECT_EQ(live_text(status), "[  12.3 s]");
+  EXPECT_EQ(progress_text(status), "[  12.3 s]");
   status.mode = "offboard";
   status.progress = 0.617;
   status.to_go = 7.66;
   status.nearest = planner::base::kInfinity;
-  EXPECT_EQ(live_text(status), "[  12.3 s] offboard  62 %  7.7 m to go  nothing near");
+  EXPECT_EQ(progress_text(status), "[  12.3 s] offboard  62 %  7.7 m to go  nothing near");
   status.nearest = 2.06;
   status.plan_ms = 12.4;
   status.speed = 3.0;
   status.height = 1.5;
   status.tracks = 1;
   status.stale = {"tracks 1.4 s old", "position 0.6 s old"};
-  EXPECT_EQ(live_text(status),
+  EXPECT_EQ(progress_text(status),
             "[  12.3 s] offboard  ! tracks 1.4 s old, position 0.6 s old  62 %  7.7 m to go  nearest 2.1 m  plan 12 ms"
             "  3.0 m/s  height 1.5 m  1 track");
 }
@@ -61,7 +61,7 @@ class LiveFlightTest : public ::testing::Test {
   config::Mission mission_;
   const Printer printer_{false};
   std::optional<BackgroundPrinter> background_{printer_};
-  LiveFlight live_{mission_, 0.3, *background_};
+  FlightProgress live_{mission_, 0.3, *background_};
   bool capturing_ = true;
 };
 

@@ -34,26 +34,26 @@ std::string read(const std::filesystem::path& file) {
   return text.str();
 }
 
-TEST(JsonLine, NumbersReadBackToTheSameBits) {
+TEST(JsonWriter, NumbersReadBackToTheSameBits) {
   for (const double x : {0.0, -0.0, 1.0, -3.0, 0.1, 1.0 / 3.0, 1e22, -1e300, 123456789012345680.0,
                          18446744073709551615.0, 5e-324, std::numeric_limits<double>::max(), 2.2250738585072014e-308}) {
-    base::JsonLine line;
+    base::JsonWriter line;
     line.open('[').number(x).close(']');
     const double again = Json::parse(line.str())[0].get<double>();
     EXPECT_EQ(std::bit_cast<std::uint64_t>(again), std::bit_cast<std::uint64_t>(x)) << line.str();
   }
 }
 
-TEST(JsonLine, SaysWhatIsNotFinite) {
+TEST(JsonWriter, SaysWhatIsNotFinite) {
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  base::JsonLine line;
+  base::JsonWriter line;
   line.open('[').number(inf).number(nan).exact(inf).exact(-inf).exact(nan).exact(2.5).close(']');
   EXPECT_EQ(line.str(), R"([null,null,"inf","-inf","nan",2.5])");
 }
 
-TEST(JsonLine, SeparatesAndEscapes) {
-  base::JsonLine line;
+TEST(JsonWriter, SeparatesAndEscapes) {
+  base::JsonWriter line;
   line.open('{').key("a").open('[').close(']').key("b").text("say \"{\n").key("c").flag(true);
   line.key("d").integer(18446744073709551615U).key("e").vector({1, 2, 3}).key("f").text("\xff").close('}');
   const Json json = Json::parse(line.str());

@@ -88,7 +88,7 @@ class Campaign {
         fly_one(place->task, *place->job);
       else
         judge(place->task);
-    } catch (const GivenUp&) {
+    } catch (const Cancelled&) {
       return false;  // what is not done is to be seen in the results
     }
     return true;
@@ -127,7 +127,7 @@ class Campaign {
       --open_[task];
       judge_now = to_judge(task);
       results_.add(std::move(record));
-    } catch (const GivenUp&) {
+    } catch (const Cancelled&) {
       throw;
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("flight {}: {}", job.name(), error.what()));
@@ -136,7 +136,7 @@ class Campaign {
   }
 
   void judge(std::size_t task) {
-    if (stop_()) throw GivenUp();
+    if (stop_()) throw Cancelled();
     const World& world = tasks_[task].world;
     const WorldRecord record{world.number, world.family, world.seed, judge_world(world)};
     const std::scoped_lock lock(mutex_);

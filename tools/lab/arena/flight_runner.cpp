@@ -58,7 +58,7 @@ class Stopper final : public sim::world::TruthObserver {
  public:
   explicit Stopper(const Stop& stop) : stop_(stop) {}
   void on_truth(double, std::span<const sim::world::VehicleTruth>, const sim::world::World&) override {
-    if (stop_()) throw GivenUp();
+    if (stop_()) throw Cancelled();
   }
 
  private:
@@ -152,7 +152,7 @@ void save_failure(const FailureOptions& failure, const Job& job, const FlightRec
   std::filesystem::create_directories(folder, error);
   if (error) throw ResultsError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   const std::filesystem::path file = folder / "scenario.yaml";
-  campaign::write_whole(file, config::to_yaml(scenario_of(job.world, job.tier)));
+  campaign::write_atomically(file, config::to_yaml(scenario_of(job.world, job.tier)));
   if (!failure.log) return;
 
   const config::Scenario scenario = config::load_scenario(file);

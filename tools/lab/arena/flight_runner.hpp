@@ -19,7 +19,7 @@ namespace jink::tools::lab::arena {
 using Stop = std::function<bool()>;
 
 /// What a flight throws that was given up.
-class GivenUp : public std::exception {
+class Cancelled : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "given up"; }
 };
@@ -33,7 +33,7 @@ class GivenUp : public std::exception {
                                                             const config::Settings& settings,
                                                             DurationHistogram* times = nullptr);
 
-/// Flies. Throws GivenUp once `stop` says so, and what the simulator throws.
+/// Flies. Throws Cancelled once `stop` says so, and what the simulator throws.
 [[nodiscard]] FlightRecord fly(const Job& job, const config::Scenario& scenario, const config::Settings& settings,
                                const Stop& stop);
 

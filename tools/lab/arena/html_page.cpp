@@ -87,13 +87,13 @@ std::string page(const Results& results, const Summary& summary, const std::file
 }
 
 void write_tables(const Results& results, const Summary& summary, const std::filesystem::path& out) {
-  campaign::write_whole(out / "flights.csv", flights_csv(results, out));
-  campaign::write_whole(out / "table.csv", table_csv(summary));
-  campaign::write_whole(out / "table.json", summary_json(results, summary, out).dump(2) + "\n");
-  campaign::write_whole(out / "table.md", table_markdown(results, summary, out));
-  campaign::write_whole(out / "arena.html", page(results, summary, out));
+  campaign::write_atomically(out / "flights.csv", flights_csv(results, out));
+  campaign::write_atomically(out / "table.csv", table_csv(summary));
+  campaign::write_atomically(out / "table.json", summary_json(results, summary, out).dump(2) + "\n");
+  campaign::write_atomically(out / "table.md", table_markdown(results, summary, out));
+  campaign::write_atomically(out / "arena.html", page(results, summary, out));
   // Last, so that a merge that was interrupted can be repeated.
-  campaign::write_whole(results_path(out), to_text(results));
+  campaign::write_atomically(results_path(out), to_text(results));
 }
 
 }  // namespace jink::tools::lab::arena

@@ -16,7 +16,7 @@ namespace jink::tools::lab::arena {
 
 using campaign::has_begun;
 using campaign::ResultsError;
-using campaign::write_whole;
+using campaign::write_atomically;
 
 struct Results {
   CampaignSettings settings;
@@ -45,11 +45,11 @@ struct Results {
 [[nodiscard]] std::string to_text(const Results& results);
 
 /// OUT/flights.jsonl while a campaign runs.
-class ResultsFile : public campaign::LineFile {
+class ResultsFile : public campaign::JsonLinesFile {
  public:
-  /// As LineFile, with the results' header.
+  /// As JsonLinesFile, with the results' header.
   ResultsFile(const std::filesystem::path& file, const Results& results)
-      : campaign::LineFile(file, to_header(results.settings)) {}
+      : campaign::JsonLinesFile(file, to_header(results.settings)) {}
 };
 
 }  // namespace jink::tools::lab::arena

@@ -16,17 +16,17 @@ constexpr double kAtTarget = 1e-6;  // m
 
 }  // namespace
 
-void RivalTask::start(bridge::companion::PlanJob job) {
+void BaselineTask::start(bridge::companion::PlanJob job) {
   assert(!result_);
   bridge::companion::PlanResult& result = result_.emplace();
   result.job = std::move(job);
   result.job.request.tracks = result.job.tracks;
   result.job.request.paths = result.job.paths;
-  if (is_finite(result.job.request)) result.plan = rival_->plan(result.job);
+  if (is_finite(result.job.request)) result.plan = baseline_->plan(result.job);
   result.ms = 1e3 * latency_;
 }
 
-std::optional<bridge::companion::PlanResult> RivalTask::poll(double now) {
+std::optional<bridge::companion::PlanResult> BaselineTask::poll(double now) {
   if (!result_ || now + kRounding < result_->job.begun + latency_) return std::nullopt;
   std::optional<bridge::companion::PlanResult> result = std::exchange(result_, std::nullopt);
   result->missed = now > result->job.start + kRounding;
@@ -44,8 +44,8 @@ bool is_finite(const planner::horizon::PathRequest& request) {
                      [](const planner::geometry::KnownPath& path) { return path.well_formed(); });
 }
 
-std::vector<planner::base::Track> kept_clear(const planner::horizon::PathRequest& request,
-                                             const planner::base::HorizonSettings& settings) {
+std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::PathRequest& request,
+                                                     const planner::base::HorizonSettings& settings) {
   std::vector<planner::base::Track> spheres(request.tracks.begin(), request.tracks.end());
   for (const planner::geometry::KnownPath& path : request.paths) {
     planner::base::Track track;
@@ -75,8 +75,8 @@ planner::verify::Verification check(const planner::base::TimedPath& path, const 
                                   request.acceleration_trust, until, request.paths});
 }
 
-planner::verify::Plan judged(planner::base::TimedPath path, const planner::horizon::PathRequest& request,
-                             double horizon) {
+planner::verify::Plan verified_plan(planner::base::TimedPath path, const planner::horizon::PathRequest& request,
+                                    double horizon) {
   planner::verify::Plan plan;
   plan.path = std::move(path);
   plan.verification = check(plan.path, request, 0.0, horizon);
@@ -93,7 +93,7 @@ planner::verify::Plan judged(planner::base::TimedPath path, const planner::horiz
   return plan;
 }
 
-bool less_harm(const planner::verify::Verification& a, const planner::verify::Verification& b) {
+bool is_safer(const planner::verify::Verification& a, const planner::verify::Verification& b) {
   if (a.free() != b.free()) return a.free();
   if (a.free()) return a.min_clearance > b.min_clearance;
   if (a.first_contact.has_value() != b.first_contact.has_value()) return !a.first_contact;

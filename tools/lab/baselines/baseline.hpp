@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all rivals of jink in the arena share: how they stand in for the companion's planner, what they keep clear of,
-// and how their paths are judged.
+// What all baselines of jink in the arena share: how they stand in for the companion's planner, what they keep clear
+// of, and how their paths are judged.
 #pragma once
 
 #include <memory>
@@ -12,26 +12,27 @@
 namespace jink::tools::lab::baselines {
 
 /// A way of planning. One serves one flight; not thread-safe, but several may work at once in threads of their own.
-class Rival {
+class Baseline {
  public:
-  virtual ~Rival() = default;
+  virtual ~Baseline() = default;
   /// A path from the job's state on, at times from its start on (path time 0), and how far it was found free. The
   /// request's tracks and paths are the job's. Numbers in the request are finite. A pure function of the jobs so far.
   virtual planner::verify::Plan plan(const bridge::companion::PlanJob& job) = 0;
 };
 
-/// A rival in virtual time: plans at once and hands the plan out `latency` seconds later, as VirtualPlanner does. A
+/// A baseline in virtual time: plans at once and hands the plan out `latency` seconds later, as VirtualPlanner does. A
 /// request that holds a number that is not finite gets a plan without a path, kInvalid.
-class RivalTask final : public bridge::companion::PlannerTask {
+class BaselineTask final : public bridge::companion::PlannerTask {
  public:
-  RivalTask(std::unique_ptr<Rival> rival, double latency) : rival_(std::move(rival)), latency_(latency) {}
+  BaselineTask(std::unique_ptr<Baseline> baseline, double latency)
+      : baseline_(std::move(baseline)), latency_(latency) {}
   void start(bridge::companion::PlanJob job) override;
   [[nodiscard]] bool busy() const override { return result_.has_value(); }
   [[nodiscard]] double latency() const override { return latency_; }
   [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override;
 
  private:
-  std::unique_ptr<Rival> rival_;
+  std::unique_ptr<Baseline> baseline_;
   double latency_;
   std::optional<bridge::companion::PlanResult> result_;
 };
@@ -42,8 +43,8 @@ class RivalTask final : public bridge::companion::PlannerTask {
 /// The request's tracks, as spheres that the vehicle's centre must not enter: grown by the vehicle's radius, the margin
 /// and `sigma_factor` standard deviations of the position as it is now (at most `clearance_limit`), which is what jink
 /// asks for too. Vehicles that told their paths follow, each as a track at its present velocity.
-[[nodiscard]] std::vector<planner::base::Track> kept_clear(const planner::horizon::PathRequest& request,
-                                                           const planner::base::HorizonSettings& settings);
+[[nodiscard]] std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::PathRequest& request,
+                                                                   const planner::base::HorizonSettings& settings);
 
 /// Checks `path` against the request's tracks and known paths up to path time `until`, with the vehicle's sphere
 /// larger by `margin`. A path that ends before waits at its end.
@@ -57,6 +58,6 @@ class RivalTask final : public bridge::companion::PlannerTask {
                                            double horizon);
 
 /// Whether `a` does less harm than `b`: free before not free, then free for longer, then the softer contact.
-[[nodiscard]] bool less_harm(const planner::verify::Verification& a, const planner::verify::Verification& b);
+[[nodiscard]] bool is_safer(const planner::verify::Verification& a, const planner::verify::Verification& b);
 
 }  // namespace jink::tools::lab::baselines

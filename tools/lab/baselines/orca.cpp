@@ -75,11 +75,11 @@ HalfSpace orca_half_space(const Vec3& offset, double radius, const Vec3& velocit
 planner::verify::Plan OrcaPilot::plan(const bridge::companion::PlanJob& job) {
   const planner::horizon::PathRequest& request = job.request;
   const double normal = normal_acceleration(request, settings_);
-  const Vec3 wished = undisturbed_velocity(request, settings_.braking, request.position);
+  const Vec3 wished = unobstructed_velocity(request, settings_.braking, request.position);
 
   std::vector<HalfSpace> half_spaces;
   bool urgent = false;
-  for (const planner::base::Track& sphere : kept_clear(request, settings_)) {
+  for (const planner::base::Track& sphere : inflated_obstacles(request, settings_)) {
     const Vec3 offset = sphere.position - request.position;
     const double closing = request.vehicle.max_speed + sphere.velocity.norm();
     if (offset.norm() - sphere.radius > closing * orca_.time_horizon) continue;
@@ -96,14 +96,14 @@ planner::verify::Plan OrcaPilot::plan(const bridge::companion::PlanJob& job) {
   if ((chosen - wished).norm() >= kUndisturbed && chosen.norm() < kSlow * wished.norm())
     chosen = nearest_to(wished + kToTheRight * wished.cross(Vec3::UnitZ()));
 
-  Motion motion(request, settings_, urgent ? hardest_acceleration(request, settings_) : normal);
+  PathBuilder motion(request, settings_, urgent ? hardest_acceleration(request, settings_) : normal);
   if ((chosen - wished).norm() < kUndisturbed) {
     motion.fly_to_target();
   } else {
     while (motion.t() < orca_.time_horizon) motion.steer(chosen);
     motion.stop();
   }
-  return judged(motion.path(), request, settings_.time);
+  return verified_plan(motion.path(), request, settings_.time);
 }
 
 }  // namespace jink::tools::lab::baselines

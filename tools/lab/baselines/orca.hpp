@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reactive rival: ORCA in three dimensions, with the whole responsibility for avoidance.
+// The reactive baseline: ORCA in three dimensions, with the whole responsibility for avoidance.
 #pragma once
 
 #include "tools/lab/baselines/baseline.hpp"
@@ -22,14 +22,14 @@ struct OrcaSettings {
 [[nodiscard]] HalfSpace orca_half_space(const Vec3& offset, double radius, const Vec3& velocity, const Vec3& other,
                                         double time, double contact_time);
 
-/// Takes the velocity nearest to undisturbed flight's that the half-spaces of all obstacles that can matter within the
+/// Takes the velocity nearest to unobstructed flight's that the half-spaces of all obstacles that can matter within the
 /// time horizon leave, with hard ones for the climb limit and for the volume: towards a wall never faster than can be
 /// braked. Where there is none it takes the one that violates those of the obstacles the least (section 5.3 of the
-/// paper). Where that would nearly be a stop, it wishes for a velocity a tenth to the right of undisturbed flight's:
+/// paper). Where that would nearly be a stop, it wishes for a velocity a tenth to the right of unobstructed flight's:
 /// that breaks the symmetry in which ORCA only slows down. Obstacles keep the velocity of their tracks. The path flies
 /// that velocity for the time horizon and stops, or, where nothing is in the way, flies to the target; accelerations
 /// are bounded, and where a half-space is violated now more of the acceleration is used, as jink does in an emergency.
-class OrcaPilot final : public Rival {
+class OrcaPilot final : public Baseline {
  public:
   explicit OrcaPilot(const planner::base::HorizonSettings& settings, const OrcaSettings& orca = {})
       : settings_(settings), orca_(orca) {}

@@ -37,7 +37,7 @@ PaperPilot::PaperPilot(const bridge::companion::PlannerTaskSettings& settings,
 planner::verify::Plan PaperPilot::ask(const bridge::companion::PlanJob& job, double lag) {
   const planner::horizon::PathRequest& request = job.request;
   // Known paths are tracks here: the paper knows no others.
-  std::vector<planner::base::Track> tracks = kept_clear(request, settings_.horizon);
+  std::vector<planner::base::Track> tracks = inflated_obstacles(request, settings_.horizon);
   const double added = request.vehicle.radius + request.margin;
   for (planner::base::Track& track : tracks) {
     track = planner::geometry::predict(track, lag, request.acceleration_trust);
@@ -64,12 +64,12 @@ planner::verify::Plan PaperPilot::plan(const bridge::companion::PlanJob& job) {
   };
   planner::verify::Plan best;
   if (!job.previous.empty()) {
-    best = judged(planner::base::remainder(job.previous, 0.0), request, time);
+    best = verified_plan(planner::base::remainder(job.previous, 0.0), request, time);
     best.kept_previous = true;
     if (keeps_margin(best)) return best;
   }
   const double normal = normal_acceleration(request, settings_.horizon);
-  const Vec3 ahead = undisturbed_velocity(request, settings_.horizon.braking, request.position);
+  const Vec3 ahead = unobstructed_velocity(request, settings_.horizon.braking, request.position);
   const double cruise = request.vehicle.cruise_speed;
   const double speed = ahead.norm() > 0.0 ? request.velocity.dot(ahead.normalized()) : cruise;
   const RunUp run_up{std::clamp(speed, 0.0, cruise), cruise, normal};
@@ -80,13 +80,13 @@ planner::verify::Plan PaperPilot::plan(const bridge::companion::PlanJob& job) {
     wished.path[i].t += run_up.lag(way);
   }
   for (const double acceleration : {normal, hardest_acceleration(request, settings_.horizon)}) {
-    Motion motion(request, settings_.horizon, acceleration);
+    PathBuilder motion(request, settings_.horizon, acceleration);
     motion.follow(wished.path);
     motion.fly_to_target();
-    planner::verify::Plan flown = judged(motion.path(), request, time);
+    planner::verify::Plan flown = verified_plan(motion.path(), request, time);
     flown.emergency = acceleration > normal;
     const bool good = keeps_margin(flown);
-    if (good || best.path.empty() || less_harm(flown.verification, best.verification)) best = std::move(flown);
+    if (good || best.path.empty() || is_safer(flown.verification, best.verification)) best = std::move(flown);
     if (good) break;
   }
   best.evaluations = wished.evaluations;

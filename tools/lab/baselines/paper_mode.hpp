@@ -17,7 +17,7 @@ namespace jink::tools::lab::baselines {
 /// later, and the waypoints' times follow), and the vehicle follows the timed polyline with its limits. That motion is
 /// judged: it is kept while it keeps the margin, else all is planned anew; where the new one does not keep it either,
 /// it is flown with more acceleration or the old one is, whichever does the least harm.
-class PaperPilot final : public Rival {
+class PaperPilot final : public Baseline {
  public:
   PaperPilot(const bridge::companion::PlannerTaskSettings& settings, const planner::base::PaperSettings& paper);
   planner::verify::Plan plan(const bridge::companion::PlanJob& job) override;

@@ -11,8 +11,8 @@ constexpr double kAtRest = 1e-3;  // m/s
 
 }  // namespace
 
-Motion::Motion(const planner::horizon::PathRequest& request, const planner::base::HorizonSettings& settings,
-               double acceleration)
+PathBuilder::PathBuilder(const planner::horizon::PathRequest& request, const planner::base::HorizonSettings& settings,
+                         double acceleration)
     : request_(request),
       step_(settings.step),
       braking_(std::min(settings.braking, acceleration)),
@@ -22,7 +22,7 @@ Motion::Motion(const planner::horizon::PathRequest& request, const planner::base
   path_.push_back({0.0, request.position, request.velocity, Vec3::Zero()});
 }
 
-void Motion::steer(const Vec3& wished) {
+void PathBuilder::steer(const Vec3& wished) {
   Vec3 p = position();
   Vec3 v = velocity();
   follower_.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wished.x(), wished.y(), wished.z());
@@ -30,13 +30,13 @@ void Motion::steer(const Vec3& wished) {
   path_.push_back({t() + step_, p, v, Vec3::Zero()});
 }
 
-void Motion::fly_to_target() {
+void PathBuilder::fly_to_target() {
   const double stoppable = acceleration_ * step_;
   const auto arrived = [&] {
     return (position() - request_.target).norm() <= planner::horizon::kArrival && velocity().norm() <= stoppable;
   };
   do {
-    steer(undisturbed_velocity(request_, braking_, position()));
+    steer(unobstructed_velocity(request_, braking_, position()));
   } while (!arrived() && t() < kLongest);
   if (!arrived()) return;
   planner::base::TimedPoint& last = path_.back();
@@ -45,7 +45,7 @@ void Motion::fly_to_target() {
   path_[path_.size() - 2].acceleration = -path_[path_.size() - 2].velocity / step_;
 }
 
-void Motion::stop(bool hard) {
+void PathBuilder::stop(bool hard) {
   const double change = (hard ? acceleration_ : braking_) * step_;
   while (velocity().norm() > kAtRest && t() < kLongest) {
     const double speed = velocity().norm();
@@ -54,7 +54,7 @@ void Motion::stop(bool hard) {
   if (path_.size() == 1) steer(Vec3::Zero());
 }
 
-void Motion::follow(const planner::base::TimedPath& reference) {
+void PathBuilder::follow(const planner::base::TimedPath& reference) {
   const double first = reference.front().t;
   while (first + t() < reference.back().t && t() < kLongest) {
     const Vec3 from = planner::base::sample(reference, first + t()).position;
@@ -66,7 +66,7 @@ void Motion::follow(const planner::base::TimedPath& reference) {
   }
 }
 
-Vec3 undisturbed_velocity(const planner::horizon::PathRequest& request, double braking, const Vec3& position) {
+Vec3 unobstructed_velocity(const planner::horizon::PathRequest& request, double braking, const Vec3& position) {
   const Vec3 way = request.target - position;
   const double distance = way.norm();
   if (distance <= 0.0) return Vec3::Zero();

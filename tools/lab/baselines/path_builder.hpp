@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vehicle's motion under a wished velocity: what turns a rival's wishes into a path that can be flown.
+// The vehicle's motion under a wished velocity: what turns a baseline's wishes into a path that can be flown.
 #pragma once
 
 #include "planner/horizon/path_problem.hpp"
@@ -9,18 +9,18 @@ namespace jink::tools::lab::baselines {
 /// Builds a timed path step by step from a request's position and velocity. The velocity goes towards what is wished
 /// with bounded acceleration; speed and climb keep the vehicle's limits (or where they were above, come down to them).
 /// The same law, step and limits as jink's own motion (planner::Follower).
-class Motion {
+class PathBuilder {
  public:
   /// `acceleration` (m/s²) bounds every change of velocity. The request outlives this.
-  Motion(const planner::horizon::PathRequest& request, const planner::base::HorizonSettings& settings,
-         double acceleration);
+  PathBuilder(const planner::horizon::PathRequest& request, const planner::base::HorizonSettings& settings,
+              double acceleration);
 
   /// One step of settings.step seconds with this velocity wished.
   void steer(const Vec3& wished);
-  /// On to the target at cruise speed, braking for it, as jink's undisturbed flight; ends at rest there, or after
+  /// On to the target at cruise speed, braking for it, as jink's unobstructed flight; ends at rest there, or after
   /// kLongest. Looks at no obstacle.
   void fly_to_target();
-  /// Brakes to rest with settings.braking, which is also what undisturbed flight brakes with, or harder if `hard`: all
+  /// Brakes to rest with settings.braking, which is also what unobstructed flight brakes with, or harder if `hard`: all
   /// of the acceleration.
   void stop(bool hard = false);
 
@@ -43,10 +43,10 @@ class Motion {
   planner::base::TimedPath path_;
 };
 
-/// The velocity of undisturbed flight at `position`: straight to the target at cruise speed, slower where it has to
+/// The velocity of unobstructed flight at `position`: straight to the target at cruise speed, slower where it has to
 /// brake for it or the climb limit asks for it.
-[[nodiscard]] Vec3 undisturbed_velocity(const planner::horizon::PathRequest& request, double braking,
-                                        const Vec3& position);
+[[nodiscard]] Vec3 unobstructed_velocity(const planner::horizon::PathRequest& request, double braking,
+                                         const Vec3& position);
 
 /// What plans normally use of the vehicle's acceleration, and what they use in an emergency, m/s².
 [[nodiscard]] double normal_acceleration(const planner::horizon::PathRequest& request,

@@ -17,8 +17,8 @@ namespace {
 constexpr std::array<std::string_view, 7> kPilots{"jink",          "paper", "momvo",   "straight",
                                                   "stop_and_wait", "orca",  "rrt_star"};
 
-std::unique_ptr<Rival> make_rival(std::string_view name, const bridge::companion::PlannerTaskSettings& settings,
-                                  const planner::base::PaperSettings& paper) {
+std::unique_ptr<Baseline> make_rival(std::string_view name, const bridge::companion::PlannerTaskSettings& settings,
+                                     const planner::base::PaperSettings& paper) {
   if (name == "paper") return std::make_unique<PaperPilot>(settings, paper);
   if (name == "straight") return std::make_unique<StraightPilot>(settings.horizon);
   if (name == "stop_and_wait") return std::make_unique<WaitingPilot>(settings.horizon);
@@ -43,7 +43,7 @@ std::unique_ptr<bridge::companion::PlannerTask> make_pilot(std::string_view name
     alone.horizon.sharing = 0;
     return std::make_unique<bridge::companion::VirtualPlanner>(alone, latency);
   }
-  return std::make_unique<RivalTask>(make_rival(name, settings, paper), latency);
+  return std::make_unique<BaselineTask>(make_rival(name, settings, paper), latency);
 }
 
 }  // namespace jink::tools::lab::baselines

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who flies in the arena: jink, the paper's planners, and rivals. All get the same tracks and state in and give a timed
-// path out (bridge::PlannerTask); setpoints, supervisor, sensing and vehicle are the same for all.
+// Who flies in the arena: jink, the paper's planners, and baselines. All get the same tracks and state in and give a
+// timed path out (bridge::PlannerTask); setpoints, supervisor, sensing and vehicle are the same for all.
 #pragma once
 
 #include <memory>

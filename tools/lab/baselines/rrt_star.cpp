@@ -65,14 +65,14 @@ Candidate& least_harmful(std::vector<Candidate>& candidates, const planner::hori
   std::vector<planner::verify::Verification> checks;
   for (const Candidate& candidate : candidates) checks.push_back(check(candidate.path, request, 0.0, settings.time));
   for (std::size_t i = 1; i < candidates.size(); ++i) {
-    if (less_harm(checks[i], checks[best])) best = i;
+    if (is_safer(checks[i], checks[best])) best = i;
   }
   return candidates[best];
 }
 
 planner::verify::Plan made(Candidate& candidate, const planner::horizon::PathRequest& request,
                            const planner::base::HorizonSettings& settings) {
-  planner::verify::Plan plan = judged(std::move(candidate.path), request, settings.time);
+  planner::verify::Plan plan = verified_plan(std::move(candidate.path), request, settings.time);
   plan.kept_previous = candidate.is_previous;
   plan.emergency = candidate.is_emergency;
   return plan;
@@ -83,7 +83,7 @@ planner::verify::Plan made(Candidate& candidate, const planner::horizon::PathReq
 SpaceTimeProblem RrtPilot::problem(const planner::horizon::PathRequest& request,
                                    std::vector<planner::base::Track>& spheres) const {
   const planner::base::HorizonSettings& horizon = settings_.horizon;
-  spheres = kept_clear(request, horizon);
+  spheres = inflated_obstacles(request, horizon);
   const double look = horizon.time * (kLookShare + kSlackShare);
   std::erase_if(spheres, [&](const planner::base::Track& sphere) {
     const double reach =
@@ -127,17 +127,17 @@ planner::verify::Plan RrtPilot::plan(const bridge::companion::PlanJob& job) {
   const planner::horizon::PathRequest& request = job.request;
   const planner::base::HorizonSettings& horizon = settings_.horizon;
   const double normal = normal_acceleration(request, horizon);
-  Motion undisturbed(request, horizon, normal);
-  undisturbed.fly_to_target();
-  if (check(undisturbed.path(), request, request.margin, horizon.time).free())
-    return judged(undisturbed.path(), request, horizon.time);
+  PathBuilder unobstructed(request, horizon, normal);
+  unobstructed.fly_to_target();
+  if (check(unobstructed.path(), request, request.margin, horizon.time).free())
+    return verified_plan(unobstructed.path(), request, horizon.time);
 
   const planner::base::TimedPath way = as_path(search(job));
   std::vector<Candidate> candidates;
   if (!job.previous.empty()) candidates.push_back({planner::base::remainder(job.previous, 0.0), true, false});
-  Motion on(request, horizon, normal);
+  PathBuilder on(request, horizon, normal);
   on.follow(way);
-  Motion waiting = on;
+  PathBuilder waiting = on;
   on.fly_to_target();
   waiting.stop();
   candidates.push_back({on.path(), false, false});
@@ -145,11 +145,11 @@ planner::verify::Plan RrtPilot::plan(const bridge::companion::PlanJob& job) {
   if (Candidate* best = best_with_margin(candidates, request, horizon)) return made(*best, request, horizon);
 
   const double hardest = hardest_acceleration(request, horizon);
-  Motion hard(request, horizon, hardest);
+  PathBuilder hard(request, horizon, hardest);
   hard.follow(way);
   hard.stop();
   candidates.push_back({hard.path(), false, true});
-  Motion stop(request, horizon, hardest);
+  PathBuilder stop(request, horizon, hardest);
   stop.stop(true);
   candidates.push_back({stop.path(), false, true});
   return made(least_harmful(candidates, request, horizon), request, horizon);

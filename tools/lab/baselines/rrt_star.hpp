@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sampling-based rival: RRT* from OMPL, replanned again and again; the paper names it as future work.
+// The sampling-based baseline: RRT* from OMPL, replanned again and again; the paper names it as future work.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace jink::tools::lab::baselines {
 
-/// Flies undisturbed where that keeps the margin. Else searches space and time with RRT* (space_time_search.hpp) at
+/// Flies unobstructed where that keeps the margin. Else searches space and time with RRT* (space_time_search.hpp) at
 /// cruise speed towards the target, or towards the point of the straight line that lies three quarters of the time
 /// looked ahead away; obstacles move as their tracks predict. The way found is then flown with bounded speed and
 /// acceleration, and that motion is checked: on to the target, and with a stop at the way's end. The previous plan
@@ -17,7 +17,7 @@ namespace jink::tools::lab::baselines {
 /// keeps the margin, it flies what does the least harm among the new way, the old one and a hard stop.
 ///
 /// The budget is a number of iterations: the wall clock has no say.
-class RrtPilot final : public Rival {
+class RrtPilot final : public Baseline {
  public:
   explicit RrtPilot(const bridge::companion::PlannerTaskSettings& settings, const SpaceTimeSettings& search = {})
       : settings_(settings), search_(search) {}

@@ -6,9 +6,9 @@
 namespace jink::tools::lab::baselines {
 
 planner::verify::Plan StraightPilot::plan(const bridge::companion::PlanJob& job) {
-  Motion motion(job.request, settings_, normal_acceleration(job.request, settings_));
+  PathBuilder motion(job.request, settings_, normal_acceleration(job.request, settings_));
   motion.fly_to_target();
-  return judged(motion.path(), job.request, settings_.time);
+  return verified_plan(motion.path(), job.request, settings_.time);
 }
 
 }  // namespace jink::tools::lab::baselines

@@ -72,7 +72,7 @@ bool nearer_than(double margin, const Case& c) {
   });
 }
 
-/// A plan from a point of undisturbed flight, at the time when it is passed: from rest at the start, else at cruise.
+/// A plan from a point of unobstructed flight, at the time when it is passed: from rest at the start, else at cruise.
 Case case_at(const sim::world::World& world, double share, const planner::base::HorizonSettings& settings) {
   const config::Scenario& scenario = world.scenario();
   const planner::base::VehicleLimits& vehicle = scenario.vehicle;
@@ -171,7 +171,7 @@ std::vector<Results> solve(const std::vector<Case>& cases, const std::vector<Var
     problem.prepare(request);
     const double straight = (request.target - request.position).norm();
     for (std::size_t v = 0; v < variants.size(); ++v) {
-      const auto initial = planner::horizon::start_solutions(problem, request, {}, seeded[v]);
+      const auto initial = planner::horizon::initial_solutions(problem, request, {}, seeded[v]);
       const planner::base::Budget budget{variants[v].optimizer.iterations};
       Found found;
       const auto search = [&](planner::base::WorkerPool& threads) {
@@ -246,7 +246,7 @@ void print_horizon(const Options& options, planner::base::WorkerPool& pool) {
   const std::vector<Variant> variants = horizon_variants(settings);
   const planner::base::OptimizerSettings& base = variants.front().optimizer;
   print_title("ablation: horizon mode",
-              fmt::format("the optimizer alone, without a plan before, on {} plans from points of undisturbed flight "
+              fmt::format("the optimizer alone, without a plan before, on {} plans from points of unobstructed flight "
                           "in all families of worlds; default: adaptive operators, focus {}, seeding, m {}, l {}, "
                           "n_pop {}, {} generations.\nsolved: a solution of the front violates nothing. "
                           "Gaps to the best that any row found, over the plans that all rows solved: of the shortest "

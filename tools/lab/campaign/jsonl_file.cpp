@@ -67,12 +67,12 @@ bool read_lines(const std::filesystem::path& file, const std::function<void(cons
   return cut_off;
 }
 
-void write_whole(const std::filesystem::path& file, const std::string& text) {
+void write_atomically(const std::filesystem::path& file, const std::string& text) {
   if (const std::error_code error = base::write_file(file, text))
     throw ResultsError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
-LineFile::LineFile(const std::filesystem::path& file, const Json& header) : file_(file) {
+JsonLinesFile::JsonLinesFile(const std::filesystem::path& file, const Json& header) : file_(file) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw ResultsError(system_error(file));
   try {
@@ -89,15 +89,15 @@ LineFile::LineFile(const std::filesystem::path& file, const Json& header) : file
   }
 }
 
-LineFile::~LineFile() {
+JsonLinesFile::~JsonLinesFile() {
   ::close(descriptor_);
 }
 
-void LineFile::append(const Json& line) {
+void JsonLinesFile::append(const Json& line) {
   write(line.dump() + "\n");
 }
 
-void LineFile::write(const std::string& text) {
+void JsonLinesFile::write(const std::string& text) {
   if (broken_) throw ResultsError(fmt::format("{}: could not be written before", file_.string()));
   broken_ = true;
   std::size_t written = 0;

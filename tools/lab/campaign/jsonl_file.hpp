@@ -29,17 +29,17 @@ bool read_lines(const std::filesystem::path& file, const std::function<void(cons
                 const std::function<void(const nlohmann::ordered_json&)>& on_line);
 
 /// Writes a file that appears whole or not at all. Throws ResultsError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
+void write_atomically(const std::filesystem::path& file, const std::string& text);
 
 /// The file while a campaign runs; no second process can open it. Not thread-safe.
-class LineFile {
+class JsonLinesFile {
  public:
   /// Creates the file with the header, or, where it is there, goes on behind its last whole line. Throws ResultsError
   /// where it cannot be written or another process has it.
-  LineFile(const std::filesystem::path& file, const nlohmann::ordered_json& header);
-  ~LineFile();
-  LineFile(const LineFile&) = delete;
-  LineFile& operator=(const LineFile&) = delete;
+  JsonLinesFile(const std::filesystem::path& file, const nlohmann::ordered_json& header);
+  ~JsonLinesFile();
+  JsonLinesFile(const JsonLinesFile&) = delete;
+  JsonLinesFile& operator=(const JsonLinesFile&) = delete;
 
   /// Appends a line, which is in the file when this returns. Throws ResultsError (a full disk).
   void append(const nlohmann::ordered_json& line);

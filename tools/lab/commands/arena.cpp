@@ -115,7 +115,7 @@ arena::Results begin(const arena::CampaignSettings& settings, const ArenaOptions
   if (!campaign::goes_on(file, options.out, options.resume, printer)) return results;
   arena::Results earlier = arena::read_results(file);
   campaign::require_same(arena::differences(earlier.settings, options.out, settings, "this call"), options.out);
-  printer.line(fmt::format("going on with {} flights of an earlier run{}", earlier.flights.size(),
+  printer.line(fmt::format("resuming: {} flights of an earlier run{}", earlier.flights.size(),
                            earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
   return earlier;
 }
@@ -127,7 +127,7 @@ int run_campaign(const ArenaOptions& options, const cli::Printer& printer) {
   campaign::make_folder(options.out);
   cli::require_json(options.common.json);
   arena::ResultsFile file(arena::results_path(options.out), results);
-  campaign::write_whole(fs::path(options.out) / "planner.yaml", campaign::parameters_yaml(settings.parameters));
+  campaign::write_atomically(fs::path(options.out) / "planner.yaml", campaign::parameters_yaml(settings.parameters));
   printer.line(fmt::format("seed {}: {} flights on {} threads, results in {}", settings.seed,
                            arena::jobs_of(settings).size(), options.common.thread_count(), options.out));
   cli::catch_signals();
@@ -164,7 +164,8 @@ int run_merge(const ArenaOptions& options, const cli::Printer& printer) {
   const arena::Results results = arena::merge_results(folders);
   campaign::make_folder(options.out);
   for (const fs::path& folder : folders) copy_failures(folder, options.out);
-  campaign::write_whole(fs::path(options.out) / "planner.yaml", campaign::parameters_yaml(results.settings.parameters));
+  campaign::write_atomically(fs::path(options.out) / "planner.yaml",
+                             campaign::parameters_yaml(results.settings.parameters));
   conclude(results, options, printer);
   const std::size_t all = arena::jobs_of(results.settings).size();
   if (results.flights.size() == all) return base::kExitReached;
@@ -188,7 +189,7 @@ int run_write(const ArenaOptions& options, const cli::Printer& printer) {
   // Of both tiers the true world is the same; what is not asked for is not put in its sensing.
   const config::Scenario scenario =
       arena::scenario_of({0, families.front(), 0, *seed}, tiers.size() == 1 ? tiers.front() : "perfect");
-  campaign::write_whole(options.write.back(), config::to_yaml(scenario));
+  campaign::write_atomically(options.write.back(), config::to_yaml(scenario));
   printer.line(fmt::format("{}: {}", options.write.back(), scenario.name));
   return base::kExitReached;
 }
@@ -219,7 +220,8 @@ int run(const ArenaOptions& options) {
 
 cli::Subcommand add_arena(CLI::App& jink) {
   CLI::App* app = jink.add_subcommand(
-      "arena", "fly many seeded worlds closed loop in virtual time, with jink and its rivals, and make tables of it");
+      "arena",
+      "fly many seeded worlds closed loop in virtual time, with jink and the baselines, and make tables of it");
   const auto options = std::make_shared<ArenaOptions>();
   const auto names = [](std::span<const std::string_view> all) { return fmt::format("{}", fmt::join(all, ", ")); };
   app->add_option("--families", options->families,

@@ -79,7 +79,7 @@ study::Results begin(const study::StudySettings& settings, const StudyOptions& o
   if (!campaign::goes_on(file, options.out, options.resume, printer)) return results;
   study::Results earlier = study::read_results(file);
   campaign::require_same(study::differences(earlier.settings, options.out, settings, "this call"), options.out);
-  printer.line(fmt::format("going on with {} runs of an earlier call{}", earlier.runs.size(),
+  printer.line(fmt::format("resuming: {} runs of an earlier call{}", earlier.runs.size(),
                            earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
   return earlier;
 }
@@ -92,7 +92,7 @@ int run_study(const StudyOptions& options, const cli::Printer& printer) {
   const study::Setting setting(settings, planner);
   campaign::make_folder(options.out);
   cli::require_json(options.common.json);
-  campaign::LineFile file(study::results_path(options.out), study::to_header(results.settings));
+  campaign::JsonLinesFile file(study::results_path(options.out), study::to_header(results.settings));
   const study::Machine machine = study::this_machine();
   file.append(study::to_json(machine));
   results.add(machine);
@@ -126,7 +126,7 @@ int run_merge(const StudyOptions& options, const cli::Printer& printer) {
   campaign::make_folder(options.out);
   conclude(results, setting, options, printer);
   // Last, so that a merge that was interrupted can be repeated.
-  campaign::write_whole(study::results_path(options.out), study::to_text(results));
+  campaign::write_atomically(study::results_path(options.out), study::to_text(results));
   const std::size_t all = study::jobs_of(results.settings).size();
   if (results.runs.size() == all) return base::kExitReached;
   printer.line(fmt::format("{} of {} runs are missing: the same settings with --out {} --resume make them",

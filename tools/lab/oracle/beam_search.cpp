@@ -104,7 +104,7 @@ struct Beam {
 
 class Search {
  public:
-  Search(const config::Scenario& scenario, const JudgeOptions& options, const Beam& beam)
+  Search(const config::Scenario& scenario, const OracleOptions& options, const Beam& beam)
       : world_(scenario), options_(options), beam_(beam), box_(box_of(scenario)) {
     const planner::base::VehicleLimits& limits = scenario.vehicle;
     const double change = std::min(kMostChange, options.acceleration_share * limits.max_acceleration * kStep) + 1e-9;
@@ -299,7 +299,7 @@ class Search {
   }
 
   sim::world::World world_;
-  JudgeOptions options_;
+  OracleOptions options_;
   Beam beam_;
   planner::base::Box box_;
   std::vector<Index> changes_;              ///< of the velocity in a step
@@ -310,13 +310,13 @@ class Search {
 
 }  // namespace
 
-std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options, Effort effort) {
+std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options, Effort effort) {
   constexpr Beam kNarrow{500, 3, 0.02};
   constexpr Beam kWide{3000, 6, 0.06};
   return Search(scenario, options, effort == Effort::kNarrow ? kNarrow : kWide).run();
 }
 
-std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options) {
+std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options) {
   auto flight = find_flight(scenario, options, Effort::kNarrow);
   return flight ? flight : find_flight(scenario, options, Effort::kWide);
 }

@@ -22,8 +22,8 @@ std::string_view to_string(Verdict verdict) {
 
 namespace {
 
-Judgement judge_team(const config::Scenario& scenario, const JudgeOptions& options) {
-  Judgement judgement;
+OracleResult judge_team(const config::Scenario& scenario, const OracleOptions& options) {
+  OracleResult judgement;
   std::vector<Flight> flights = find_flights(scenario, options);
   if (!flights.empty()) {
     judgement.verdict = Verdict::kSolvable;
@@ -40,9 +40,9 @@ Judgement judge_team(const config::Scenario& scenario, const JudgeOptions& optio
 }  // namespace
 
 // The proof is dearer than a narrow search, which most worlds need no more than; a wide one is the dearest.
-Judgement judge(const config::Scenario& scenario, const JudgeOptions& options) {
+OracleResult judge(const config::Scenario& scenario, const OracleOptions& options) {
   if (!scenario.vehicles.empty()) return judge_team(scenario, options);
-  Judgement judgement;
+  OracleResult judgement;
   std::optional<Flight> flight = find_flight(scenario, options, Effort::kNarrow);
   if (!flight && certainly_impossible(scenario, options)) {
     judgement.verdict = Verdict::kImpossible;

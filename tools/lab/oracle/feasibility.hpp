@@ -22,7 +22,7 @@ struct TimedPoint {
   Vec3 position = Vec3::Zero();
 };
 
-struct JudgeOptions {
+struct OracleOptions {
   double margin = 0.4;              ///< m, that a flight must keep from every obstacle's surface
   double acceleration_share = 0.5;  ///< of the vehicle's limit that a flight may use
   double acceptance = 0.5;          ///< m, from the target, within which a world without a flight must not let it come
@@ -43,7 +43,7 @@ struct Flight {
   double min_clearance = planner::base::kInfinity;  ///< true_clearance() of the path
 };
 
-struct Judgement {
+struct OracleResult {
   Verdict verdict = Verdict::kUnknown;
   Flight flight;               ///< of the scenario's own vehicle; empty unless solvable
   std::vector<Flight> others;  ///< of the further vehicles, by number from 1; empty unless solvable
@@ -52,7 +52,7 @@ struct Judgement {
 /// The three answers in one: a narrow search, then the proof that there is no flight, then a wide search. All are
 /// deterministic. Thread safe. A team (Scenario::vehicles) is solvable if find_flights() finds a flight for each, and
 /// impossible if one of them could not even get there alone.
-[[nodiscard]] Judgement judge(const config::Scenario& scenario, const JudgeOptions& options = {});
+[[nodiscard]] OracleResult judge(const config::Scenario& scenario, const OracleOptions& options = {});
 
 /// How hard a search tries.
 enum class Effort { kNarrow, kWide };
@@ -64,14 +64,14 @@ enum class Effort { kNarrow, kWide };
 /// with wide beams, and the last decimetres to the target. What it returns is checked by true_clearance(), not by the
 /// search, so it is right whatever the search does. Boxes and hulls count as their enclosing spheres while it searches.
 /// Further vehicles are not there.
-[[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options,
+[[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options,
                                                 Effort effort);
 /// The same, narrow first and then wide.
-[[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const JudgeOptions& options = {});
+[[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options = {});
 
 /// A flight for each vehicle of the scenario, by number, that keeps the margin from the obstacles and from the flights
 /// of those before it, or nothing, which proves nothing.
-[[nodiscard]] std::vector<Flight> find_flights(const config::Scenario& scenario, const JudgeOptions& options = {});
+[[nodiscard]] std::vector<Flight> find_flights(const config::Scenario& scenario, const OracleOptions& options = {});
 
 /// The scenario with that vehicle for its own and no others. Throws std::out_of_range.
 [[nodiscard]] config::Scenario alone(const config::Scenario& scenario, std::size_t vehicle);
@@ -81,7 +81,7 @@ enum class Effort { kNarrow, kWide };
 /// cells of a grid next to a reached one, less those that lie wholly where the vehicle overlaps an obstacle at that
 /// instant. A cell is as long as the vehicle flies in a step, so it cannot pass more than one. Where the scenario has
 /// no world, the vehicle may come in from everywhere, 8 m around the mission. Further vehicles are not there.
-[[nodiscard]] bool certainly_impossible(const config::Scenario& scenario, const JudgeOptions& options = {});
+[[nodiscard]] bool certainly_impossible(const config::Scenario& scenario, const OracleOptions& options = {});
 
 /// The smallest distance, in continuous time, from the vehicle's sphere to the true surface of any obstacle while it
 /// flies `path`, to 0.1 mm (never below the truth); infinite without obstacles or points. Negative: they overlap, or

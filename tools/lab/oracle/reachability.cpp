@@ -159,7 +159,7 @@ class Reachability {
 
 }  // namespace
 
-bool certainly_impossible(const config::Scenario& scenario, const JudgeOptions& options) {
+bool certainly_impossible(const config::Scenario& scenario, const OracleOptions& options) {
   return !Reachability(scenario).reaches(options.acceptance);
 }
 

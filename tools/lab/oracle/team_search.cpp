@@ -32,7 +32,7 @@ config::Scenario alone(const config::Scenario& scenario, std::size_t vehicle) {
 }
 
 // Each in turn avoids those before it: the later ones' starts are theirs to leave, as their flights begin at t = 0 too.
-std::vector<Flight> find_flights(const config::Scenario& scenario, const JudgeOptions& options) {
+std::vector<Flight> find_flights(const config::Scenario& scenario, const OracleOptions& options) {
   std::vector<Flight> flights;
   std::vector<config::Obstacle> others;
   for (std::size_t k = 0; k <= scenario.vehicles.size(); ++k) {

@@ -64,7 +64,7 @@ class Speeds {
 /// The runs that are still to be made, and what the workers share.
 class Campaign {
  public:
-  Campaign(Results& results, campaign::LineFile& file, const Setting& setting, const CampaignOptions& options)
+  Campaign(Results& results, campaign::JsonLinesFile& file, const Setting& setting, const CampaignOptions& options)
       : results_(results), file_(file), setting_(setting), options_(options) {
     for (Job& job : jobs_of(results.settings)) {
       ++progress_.total;
@@ -152,7 +152,7 @@ class Campaign {
 
   mutable std::mutex mutex_;  // guards results_, file_, progress_, next_, left_, speeds_
   Results& results_;
-  campaign::LineFile& file_;
+  campaign::JsonLinesFile& file_;
   const Setting& setting_;
   const CampaignOptions& options_;
   std::vector<Job> shared_, timed_;  // fixed before the workers begin
@@ -166,7 +166,8 @@ class Campaign {
 
 }  // namespace
 
-bool run_campaign(Results& results, campaign::LineFile& file, const Setting& setting, const CampaignOptions& options) {
+bool run_campaign(Results& results, campaign::JsonLinesFile& file, const Setting& setting,
+                  const CampaignOptions& options) {
   return Campaign(results, file, setting, options).run();
 }
 

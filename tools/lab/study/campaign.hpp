@@ -29,6 +29,7 @@ struct CampaignOptions {
 /// with one thread each, then the timed ones one by one, each with the threads of the planner to itself. True once all
 /// are there; false where it was interrupted: runs under way end. What a run throws ends the study: rethrown as
 /// std::runtime_error that names the run, with all that ended before in the file.
-bool run_campaign(Results& results, campaign::LineFile& file, const Setting& setting, const CampaignOptions& options);
+bool run_campaign(Results& results, campaign::JsonLinesFile& file, const Setting& setting,
+                  const CampaignOptions& options);
 
 }  // namespace jink::tools::lab::study

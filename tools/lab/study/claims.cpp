@@ -224,8 +224,8 @@ Claim others_claim(const Selection& s) {
   std::map<Outcome, std::vector<std::string>> found;
   for (const char* name : {"mssa", "mogwo", "nsga2", "mopso"}) {
     const std::vector<Verdict> verdicts = compare(s, name);
-    found[verdicts[kLengthRespect].outcome].push_back(label_of(name) + " in length");
-    found[verdicts[kTimeRespect].outcome].push_back(label_of(name) + " in time");
+    found[verdicts[kLengthMetric].outcome].push_back(label_of(name) + " in length");
+    found[verdicts[kTimeMetric].outcome].push_back(label_of(name) + " in time");
   }
   std::vector<std::string> parts;
   parts.reserve(found.size());

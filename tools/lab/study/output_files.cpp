@@ -24,9 +24,9 @@ using Json = nlohmann::ordered_json;
 
 void write_tables(const std::map<std::string, presentation::Table>& tables, const fs::path& out) {
   for (const auto& [id, table] : tables) {
-    campaign::write_whole(out / (id + ".csv"), presentation::to_csv(table));
-    campaign::write_whole(out / (id + ".md"), presentation::to_markdown(table));
-    campaign::write_whole(out / (id + ".tex"), presentation::to_latex(table));
+    campaign::write_atomically(out / (id + ".csv"), presentation::to_csv(table));
+    campaign::write_atomically(out / (id + ".md"), presentation::to_markdown(table));
+    campaign::write_atomically(out / (id + ".tex"), presentation::to_latex(table));
   }
 }
 
@@ -67,8 +67,8 @@ void write_worlds(const Results& results, const Setting& setting, const fs::path
   fs::create_directories(out / "worlds", error);
   if (error) throw ResultsError(fmt::format("{}: {}", (out / "worlds").string(), error.message()));
   for (const auto& [file, world] : names)
-    campaign::write_whole(out / "worlds" / (file + ".yaml"),
-                          config::to_yaml(setting.scenes.scenario(world.first, world.second)));
+    campaign::write_atomically(out / "worlds" / (file + ".yaml"),
+                               config::to_yaml(setting.scenes.scenario(world.first, world.second)));
 }
 
 Json summary_json(const Selection& s, const ReportParts& parts, const fs::path& out) {
@@ -128,9 +128,9 @@ Json write_study(const Results& results, const Setting& setting, const fs::path&
   parts.tables.emplace("verdicts", verdict_table(selection));
   write_tables(parts.tables, out);
   write_worlds(results, setting, out);
-  campaign::write_whole(out / "planner.yaml", campaign::parameters_yaml(results.settings.parameters));
+  campaign::write_atomically(out / "planner.yaml", campaign::parameters_yaml(results.settings.parameters));
   parts.figures = draw_figures(all_figures(selection, setting), out, threads);
-  campaign::write_whole(out / "report.html", presentation::report_html(study_report(selection, setting, parts)));
+  campaign::write_atomically(out / "report.html", presentation::report_html(study_report(selection, setting, parts)));
   return summary_json(selection, parts, out);
 }
 

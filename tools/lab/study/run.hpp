@@ -20,7 +20,7 @@ struct Setting {
   Setting(const StudySettings& settings, const config::Settings& planner);
 
   config::Settings planner;
-  Scenes scenes;
+  StudyWorlds scenes;
   std::vector<FrontStep> steps;          ///< of the paper's hardest world
   std::vector<FrontStep> blocked_steps;  ///< of the first run's blocked one
 

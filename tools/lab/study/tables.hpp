@@ -40,7 +40,7 @@ enum class Criterion { kLength, kTime };
 [[nodiscard]] std::vector<presentation::Table> rank_tables(const Selection& selection, bool blocked);
 
 /// Table 12: the pictured worlds, and how PMOMVO-6 does in them.
-[[nodiscard]] presentation::Table picture_table(const Selection& selection, const Scenes& scenes, bool blocked);
+[[nodiscard]] presentation::Table picture_table(const Selection& selection, const StudyWorlds& scenes, bool blocked);
 
 /// Tables 13 and 14: mean length and mean planning time over population and iterations.
 [[nodiscard]] std::vector<presentation::Table> sensitivity_tables(const Selection& selection, bool blocked);
@@ -56,7 +56,7 @@ enum class Criterion { kLength, kTime };
 [[nodiscard]] presentation::Table anytime_table(const Selection& selection, bool blocked);
 
 /// All of them, the harder versions behind.
-[[nodiscard]] std::vector<presentation::Table> all_tables(const Selection& selection, const Scenes& scenes);
+[[nodiscard]] std::vector<presentation::Table> all_tables(const Selection& selection, const StudyWorlds& scenes);
 
 /// "table06" or "table06-blocked".
 [[nodiscard]] std::string table_id(const char* number, bool blocked);

@@ -83,7 +83,7 @@ std::vector<Criterion15> criteria_of_comparison() {
 
 }  // namespace
 
-presentation::Table picture_table(const Selection& selection, const Scenes& scenes, bool blocked) {
+presentation::Table picture_table(const Selection& selection, const StudyWorlds& scenes, bool blocked) {
   presentation::Table table;
   table.id = table_id("table12", blocked);
   table.title = fmt::format("{} for the illustration of obstacle avoidance, and paths of {} in them",
@@ -195,7 +195,7 @@ presentation::Table success_table(const Selection& selection) {
   return table;
 }
 
-std::vector<presentation::Table> all_tables(const Selection& selection, const Scenes& scenes) {
+std::vector<presentation::Table> all_tables(const Selection& selection, const StudyWorlds& scenes) {
   std::vector<presentation::Table> tables;
   const auto add = [&](std::vector<presentation::Table> more) {
     for (presentation::Table& table : more) tables.push_back(std::move(table));

@@ -52,10 +52,10 @@ std::string names_of(const std::vector<std::string>& list) {
   return fmt::format("{} and {}", fmt::join(list.begin(), list.end() - 1, ", "), list.back());
 }
 
-/// The respects in which the verdict is `wanted`.
+/// The metrics in which the verdict is `wanted`.
 std::vector<std::string> subjects(const std::vector<Verdict>& verdicts, Outcome wanted) {
   std::vector<std::string> list;
-  const std::vector<Respect> all = respects();
+  const std::vector<Metric> all = metrics();
   for (std::size_t i = 0; i < all.size(); ++i)
     if (verdicts[i].outcome == wanted)
       list.push_back(
@@ -98,7 +98,7 @@ Verdict judge(const std::vector<double>& differences, double resolution) {
   return verdict;
 }
 
-std::vector<Respect> respects() {
+std::vector<Metric> metrics() {
   return {{"Hypervolume lost, scenario 5", "hypervolume in scenario 5", ""},
           {"Hypervolume lost, blocked", "hypervolume in the blocked world", ""},
           {"Path length, scenario 5 (µm)", "path length in scenario 5", " µm"},
@@ -130,8 +130,8 @@ presentation::Table verdict_table(const Selection& selection) {
       "better for {}",
       label_of(kRetained), label_of(kRetained));
   table.columns = {"Against"};
-  const std::vector<Respect> all = respects();
-  for (const Respect& respect : all) table.columns.push_back(respect.name);
+  const std::vector<Metric> all = metrics();
+  for (const Metric& respect : all) table.columns.push_back(respect.name);
   for (const algorithms::Algorithm& algorithm : algorithms::algorithms()) {
     if (algorithm.name == kRetained) continue;
     const std::vector<Verdict> verdicts = compare(selection, algorithm.name);

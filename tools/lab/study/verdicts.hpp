@@ -29,22 +29,22 @@ struct Verdict {
 [[nodiscard]] Verdict judge(const std::vector<double>& differences, double resolution = 0.0);
 
 /// A respect in which algorithms are compared.
-struct Respect {
+struct Metric {
   std::string name;     ///< of the column: "Path length, scenario 5 (µm)"
   std::string subject;  ///< in a sentence: "path length in scenario 5"
   std::string unit;     ///< behind a number: " µm"
 };
-[[nodiscard]] std::vector<Respect> respects();
+[[nodiscard]] std::vector<Metric> metrics();
 /// Places of two of them: those of Table 15.
-inline constexpr std::size_t kLengthRespect = 2, kTimeRespect = 5;
+inline constexpr std::size_t kLengthMetric = 2, kTimeMetric = 5;
 
-/// The retained algorithm against `other` in each of respects().
+/// The retained algorithm against `other` in each of metrics().
 [[nodiscard]] std::vector<Verdict> compare(const Selection& selection, std::string_view other);
 
 /// "verdicts": a row for each other algorithm, a column for each respect.
 [[nodiscard]] presentation::Table verdict_table(const Selection& selection);
 
-/// Sentences: against whom the retained algorithm is worse, not shown to differ, or better, in which respects; first
+/// Sentences: against whom the retained algorithm is worse, not shown to differ, or better, in which metrics; first
 /// NSGA-II and MOEA/D, which are the standard.
 [[nodiscard]] std::vector<std::string> verdict_sentences(const Selection& selection);
 

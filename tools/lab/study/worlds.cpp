@@ -102,13 +102,13 @@ config::Scenario blocked_scenario(const config::Scenario& base, std::uint64_t se
   return scenario;
 }
 
-Scenes::Scenes(std::uint64_t seed) : seed_(seed) {
+StudyWorlds::StudyWorlds(std::uint64_t seed) : seed_(seed) {
   for (const auto& names : {numbered_worlds(false), pictured_worlds(false)})
     for (const std::string& name : names)
       paper_.emplace(name, config::load_scenario(config::config_folder() / "scenarios" / (name + ".yaml")));
 }
 
-config::Scenario Scenes::scenario(const std::string& name, int run) const {
+config::Scenario StudyWorlds::scenario(const std::string& name, int run) const {
   if (!is_blocked(name)) return paper_.at(name);
   const config::Scenario& base = paper_.at("table" + name.substr(7));
   const bool pictured = is_pictured(name);
@@ -117,7 +117,7 @@ config::Scenario Scenes::scenario(const std::string& name, int run) const {
   return scenario;
 }
 
-World Scenes::world(const std::string& name, int run) const {
+World StudyWorlds::world(const std::string& name, int run) const {
   const config::Scenario s = scenario(name, run);
   const sim::world::KnownWorld known(s);
   return {s.start, s.target, s.vehicle, known.tracks, known.volume};

@@ -40,10 +40,10 @@ struct World {
 [[nodiscard]] config::Scenario blocked_scenario(const config::Scenario& base, std::uint64_t seed);
 
 /// All worlds by name. Immutable, so threads may share it.
-class Scenes {
+class StudyWorlds {
  public:
   /// Reads the paper's scenarios from config_folder(). Throws config::ConfigError. `seed` is the study's.
-  explicit Scenes(std::uint64_t seed);
+  explicit StudyWorlds(std::uint64_t seed);
 
   /// A paper's world is the same in every run, and so is a pictured one; another blocked one is another in each. Throws
   /// std::out_of_range for a name that is none.

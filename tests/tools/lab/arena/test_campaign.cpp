@@ -183,7 +183,7 @@ TEST(Campaign, GivesUpAFlightUnderWay) {
   const Job job = jobs_of(small(1)).front();
   int asked = 0;
   const Stop soon = [&] { return ++asked > 10; };
-  EXPECT_THROW(static_cast<void>(fly(job, scenario_of(job.world, job.tier), quick_planner(), soon)), GivenUp);
+  EXPECT_THROW(static_cast<void>(fly(job, scenario_of(job.world, job.tier), quick_planner(), soon)), Cancelled);
   EXPECT_EQ(asked, 11);
 }
 

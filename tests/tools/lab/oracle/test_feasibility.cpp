@@ -47,7 +47,7 @@ std::vector<config::Obstacle> wall(double hole, double swing = 0.0) {
 }
 
 /// Every promise that judge.hpp makes of a flight, with the sweep of sim as the second opinion on its clearance.
-void expect_sound(const config::Scenario& scenario, const Flight& flight, const JudgeOptions& options = {}) {
+void expect_sound(const config::Scenario& scenario, const Flight& flight, const OracleOptions& options = {}) {
   const std::vector<TimedPoint>& path = flight.path;
   ASSERT_GE(path.size(), 2U);
   EXPECT_EQ(path.front().t, 0.0);
@@ -79,7 +79,7 @@ void expect_sound(const config::Scenario& scenario, const Flight& flight, const 
 
 TEST(Judge, EmptyWorldIsSolvable) {
   const config::Scenario scenario = hall({});
-  const Judgement judgement = judge(scenario);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   expect_sound(scenario, judgement.flight);
   EXPECT_GE(judgement.flight.arrival_time, 16.0 / 5.0);
@@ -90,7 +90,7 @@ TEST(Judge, EmptyWorldIsSolvable) {
 TEST(Judge, NeedsNoWorldBox) {
   config::Scenario scenario = hall({ball(1.0, config::LinearMotion{{8, 0, 2}})});
   scenario.world.reset();
-  const Judgement judgement = judge(scenario);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   expect_sound(scenario, judgement.flight);
 }
@@ -101,7 +101,7 @@ TEST(Judge, ClosedWallIsImpossible) {
 
 TEST(Judge, WallWithAHoleIsSolvable) {
   const config::Scenario scenario = hall(wall(1.6));
-  const Judgement judgement = judge(scenario);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   expect_sound(scenario, judgement.flight);
 }
@@ -110,9 +110,9 @@ TEST(Judge, WallWithAHoleIsSolvable) {
 TEST(Judge, WallWithATightHoleIsUnknown) {
   const config::Scenario scenario = hall(wall(1.0));
   EXPECT_EQ(judge(scenario).verdict, Verdict::kUnknown);
-  JudgeOptions bold;
+  OracleOptions bold;
   bold.margin = 0.0;
-  const Judgement judgement = judge(scenario, bold);
+  const OracleResult judgement = judge(scenario, bold);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   expect_sound(scenario, judgement.flight, bold);
 }
@@ -139,7 +139,7 @@ TEST(Judge, TargetIsReachedOnceItIsFree) {
   const Vec3 target = hall({}).target;
   const config::WaypointsMotion leaves{{10, 13}, {target, target + Vec3(0, 0, 10)}};
   const config::Scenario scenario = hall({ball(0.8, leaves)});
-  const Judgement judgement = judge(scenario);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   expect_sound(scenario, judgement.flight);
   EXPECT_GE(judgement.flight.arrival_time, 10.0);
@@ -178,7 +178,7 @@ TEST(Judge, FlightsThroughTheFamiliesAreSound) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const config::Scenario scenario = sim::families::make_world(family, seed);
       SCOPED_TRACE(scenario.name);
-      const Judgement judgement = judge(scenario);
+      const OracleResult judgement = judge(scenario);
       ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
       expect_sound(scenario, judgement.flight);
       ASSERT_EQ(judgement.others.size(), scenario.vehicles.size());
@@ -202,7 +202,7 @@ Vec3 place_at(const Flight& flight, double t) {
 TEST(Judge, FlightsOfATeamKeepApart) {
   config::Scenario scenario = hall({});
   scenario.vehicles = {{scenario.target, scenario.start, "ardrone2", {}}, {{8, -2, 2}, {8, 2, 2}, "ardrone2", {}}};
-  const Judgement judgement = judge(scenario);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
   ASSERT_EQ(judgement.others.size(), 2U);
   const std::vector<const Flight*> flights = {&judgement.flight, &judgement.others[0], &judgement.others[1]};

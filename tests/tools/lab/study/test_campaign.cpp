@@ -20,7 +20,7 @@ class StudyCampaign : public ::testing::Test {
                       const std::function<bool()>& interrupted, bool& complete) {
     const Setting setting(results.settings, small_planner());
     std::filesystem::create_directories(folder);
-    campaign::LineFile file(results_path(folder), to_header(results.settings));
+    campaign::JsonLinesFile file(results_path(folder), to_header(results.settings));
     const std::size_t had = results.runs.size();
     std::size_t told = had;
     complete =

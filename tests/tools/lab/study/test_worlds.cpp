@@ -26,7 +26,7 @@ bool hit(const World& world, std::span<const planner::base::Track> tracks) {
 }
 
 TEST(BlockedWorlds, HaveThePapersSizeAndHalfOfTheirObstaclesHitTheStraightFlight) {
-  const Scenes scenes(1);
+  const StudyWorlds scenes(1);
   for (const bool pictured : {false, true}) {
     const auto blocked = pictured ? pictured_worlds(true) : numbered_worlds(true);
     const auto papers = pictured ? pictured_worlds(false) : numbered_worlds(false);
@@ -47,7 +47,7 @@ TEST(BlockedWorlds, HaveThePapersSizeAndHalfOfTheirObstaclesHitTheStraightFlight
 }
 
 TEST(BlockedWorlds, LeaveStartAndArrivalFree) {
-  const Scenes scenes(3);
+  const StudyWorlds scenes(3);
   for (int run = 0; run < 20; ++run) {
     const World world = scenes.world(hardest_world(true), run);
     const double end = straight_flight(world).back().t;
@@ -60,10 +60,10 @@ TEST(BlockedWorlds, LeaveStartAndArrivalFree) {
 }
 
 TEST(BlockedWorlds, AreOthersInEachRunAndForEachSeedButForThePicturedOnes) {
-  const auto first = [](const Scenes& scenes, const std::string& name, int run) {
+  const auto first = [](const StudyWorlds& scenes, const std::string& name, int run) {
     return scenes.world(name, run).tracks.front().position;
   };
-  const Scenes one(1), again(1), other(2);
+  const StudyWorlds one(1), again(1), other(2);
   EXPECT_EQ(first(one, "blocked2-1", 0), first(again, "blocked2-1", 0));
   EXPECT_NE(first(one, "blocked2-1", 0), first(one, "blocked2-1", 1));
   EXPECT_NE(first(one, "blocked2-1", 0), first(other, "blocked2-1", 0));
@@ -71,7 +71,7 @@ TEST(BlockedWorlds, AreOthersInEachRunAndForEachSeedButForThePicturedOnes) {
 }
 
 TEST(PapersWorlds, HaveAFreeStraightFlight) {
-  const Scenes scenes(1);
+  const StudyWorlds scenes(1);
   for (const std::string& name : numbered_worlds(false)) {
     const World world = scenes.world(name, 0);
     EXPECT_FALSE(hit(world, world.tracks)) << name;
@@ -127,7 +127,7 @@ TEST(ReferenceFront, OfAProblemWithOneBestPointIsThatPoint) {
 TEST(FrontSteps, OfABlockedWorldHaveRoomAndFrontsWhateverTheSeed) {
   const config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Scenes scenes(seed);
+    const StudyWorlds scenes(seed);
     const auto steps = front_steps(scenes.world(hardest_world(true), 0), settings.paper, true);
     ASSERT_EQ(steps.size(), kFrontSteps);
     for (const FrontStep& step : steps) {
@@ -143,14 +143,14 @@ TEST(FrontSteps, OfABlockedWorldHaveRoomAndFrontsWhateverTheSeed) {
 TEST(FrontSteps, AreRefusedWhereThereAreNoFronts) {
   config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
   settings.paper.lateral_range = 1e-3;
-  const Scenes scenes(1);
+  const StudyWorlds scenes(1);
   for (const bool blocked : {false, true})
     EXPECT_THROW(static_cast<void>(front_steps(scenes.world(hardest_world(blocked), 0), settings.paper, blocked)),
                  std::invalid_argument);
 }
 
 TEST(FrontSteps, HaveFrontsThatNoRandomPointBeats) {
-  const Scenes scenes(1);
+  const StudyWorlds scenes(1);
   const config::Settings settings = config::load_settings(config::config_folder() / "planner.yaml");
   for (const bool blocked : {false, true}) {
     std::size_t hits = 0;
