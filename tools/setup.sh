@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what jink builds with on Debian 12: packages by apt, Python packages into .venv. Quick when nothing is missing.
 # Called by tools/demo.sh, tools/test.sh and .ci/run; safe to run by hand. Not root: uses sudo and says so.
-#   tools/setup.sh [test|bench|sanitizers...]   what the tests, tools/bench.sh, or tools/fuzz.sh and the preset asan need too
+#   tools/setup.sh [test|docs|bench|sanitizers...]   what the tests, tools/docs.sh, tools/bench.sh, or tools/fuzz.sh and
+#                                                    the preset asan need too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,6 +18,7 @@ for group in "$@"; do
   case $group in
   # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
   test) command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell) ;;
+  docs) packages+=(doxygen) ;;
   bench) packages+=(libbenchmark-dev) ;;
   sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
   *) echo "setup: unknown group of packages: $group" >&2; exit 2 ;;

@@ -63,8 +63,10 @@ inline double exponential(double x) {
   return std::ldexp(series, static_cast<int>(power));
 }
 
+/// Both of one angle.
 struct SineCosine {
-  double sine = 0.0, cosine = 1.0;
+  double sine = 0.0,  ///< of the angle
+      cosine = 1.0;   ///< of the same angle
 };
 
 /// Of |x| <= 1e5 rad, within 4e-16 for small x and 1e-11 at that bound: Taylor's series about the nearest multiple of

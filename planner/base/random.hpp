@@ -17,6 +17,7 @@ namespace jink::planner::base {
 /// counter: good for spreading seeds, which is all that it is used for here.
 class SplitMix64 {
  public:
+  /// Begins at this counter; any value will do.
   explicit constexpr SplitMix64(std::uint64_t seed) noexcept : state_(seed) {}
 
   /// The next 64 bits.
@@ -36,6 +37,7 @@ class SplitMix64 {
 /// state must not be all zero.
 class Xoshiro256PlusPlus {
  public:
+  /// Begins in this state. Precondition: not all zero.
   explicit constexpr Xoshiro256PlusPlus(const std::array<std::uint64_t, 4>& state) noexcept : state_(state) {}
 
   /// The next 64 bits.
@@ -63,6 +65,7 @@ class Xoshiro256PlusPlus {
 /// The same bits on every machine.
 class RandomStream {
  public:
+  /// The stream of this name: seed, stream and substream.
   explicit constexpr RandomStream(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t substream = 0) noexcept
       : engine_(spread(seed, stream, substream)) {}
 

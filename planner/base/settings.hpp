@@ -30,40 +30,40 @@ enum class Operators {
 
 /// MOMVO and PMOMVO, [Paper] Algorithms 1 and 2.
 struct OptimizerSettings {
-  int slaves = 6;             ///< m, sub-swarms
-  int sharing = 9;            ///< l, sharings; the iterations are split in l + 1 cycles
-  int population = 50;        ///< n_pop, universes of all slaves together
-  int iterations = 100;       ///< n_iter
-  int archive = 100;          ///< capacity of each archive
-  double wep_min = 0.2;       ///< rho_min of Eq. (19)
-  double wep_max = 1.0;       ///< rho_max of Eq. (19)
-  double exploitation = 6.0;  ///< gamma of Eq. (20)
-  Operators operators = Operators::kAdaptive;
+  int slaves = 6;                              ///< m, sub-swarms
+  int sharing = 9;                             ///< l, sharings; the iterations are split in l + 1 cycles
+  int population = 50;                         ///< n_pop, universes of all slaves together
+  int iterations = 100;                        ///< n_iter
+  int archive = 100;                           ///< capacity of each archive
+  double wep_min = 0.2;                        ///< rho_min of Eq. (19)
+  double wep_max = 1.0;                        ///< rho_max of Eq. (19)
+  double exploitation = 6.0;                   ///< gamma of Eq. (20)
+  Operators operators = Operators::kAdaptive;  ///< how universes move
   double focus = 0.7;       ///< probability that a narrow move starts from the best in the first objective
   bool opposition = false;  ///< whether random universes come in opposite pairs
 };
 
 /// The paper's problem: one waypoint at a time along the axis.
 struct PaperSettings {
-  int waypoints = 20;  ///< including start and target
-  Constraint constraint = Constraint::kSwept;
-  Axis axis = Axis::kWorldX;
-  double steering_limit_deg = 60.0;  ///< phi_max of Eq. (3)
-  double penalty = 1000.0;           ///< lambda of Eq. (17)
-  double lateral_range = 4.0;        ///< half width of the search box about the straight line
-  double narrow_gap = 0.52;          ///< delta_narrow: surface gap below which a pair gets a virtual sphere, Eq. (15)
-  double narrow_altitude = 0.3;      ///< altitude difference up to which two obstacles count as level
-  double margin = 0.05;              ///< added to the sum of radii
+  int waypoints = 20;                          ///< including start and target
+  Constraint constraint = Constraint::kSwept;  ///< when a segment hits
+  Axis axis = Axis::kWorldX;                   ///< along which the waypoints stand
+  double steering_limit_deg = 60.0;            ///< phi_max of Eq. (3)
+  double penalty = 1000.0;                     ///< lambda of Eq. (17)
+  double lateral_range = 4.0;                  ///< half width of the search box about the straight line
+  double narrow_gap = 0.52;      ///< delta_narrow: surface gap below which a pair gets a virtual sphere, Eq. (15)
+  double narrow_altitude = 0.3;  ///< altitude difference up to which two obstacles count as level
+  double margin = 0.05;          ///< added to the sum of radii
 };
 
 /// The remaining path at once, replanned in flight.
 struct HorizonSettings {
-  int waypoints = 6;  ///< K
-  double time = 6.0;  ///< looked ahead; the rest is straight
-  double step = 0.1;  ///< between points of the timed path
-  int slaves = 4;
-  int sharing = 3;
-  int population = 48;
+  int waypoints = 6;                 ///< K
+  double time = 6.0;                 ///< looked ahead; the rest is straight
+  double step = 0.1;                 ///< between points of the timed path
+  int slaves = 4;                    ///< m, as OptimizerSettings::slaves
+  int sharing = 3;                   ///< l, as OptimizerSettings::sharing
+  int population = 48;               ///< n_pop, as OptimizerSettings::population
   int generations = 100;             ///< budget of one plan in virtual time, and the upper bound in real time
   double deadline_ms = 20.0;         ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
@@ -79,12 +79,12 @@ struct HorizonSettings {
   double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
   double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
   double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
-  double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this fraction are not chosen
-  double weight_length = 0.6;  ///< modified TOPSIS
-  double weight_steering = 0.05;
-  double weight_clearance = 0.35;
-  bool seeding = true;       ///< whether the search starts from manoeuvres
-  double keep_ratio = 0.05;  ///< a previous plan is kept unless a new one is better by this fraction
+  double length_band = 0.1;        ///< solutions longer than the shortest feasible one by this fraction are not chosen
+  double weight_length = 0.6;      ///< of f1 in the modified TOPSIS
+  double weight_steering = 0.05;   ///< of f2
+  double weight_clearance = 0.35;  ///< of f3
+  bool seeding = true;             ///< whether the search starts from manoeuvres
+  double keep_ratio = 0.05;        ///< a previous plan is kept unless a new one is better by this fraction
 
   /// The same settings, of more acceleration.
   [[nodiscard]] HorizonSettings for_emergencies() const {

@@ -11,10 +11,10 @@ namespace jink::planner::base {
 /// One point of a timed path. Velocity and acceleration are those of the smooth motion the points were taken from; they
 /// feed forward to the autopilot. The path itself is defined by times and positions alone.
 struct TimedPoint {
-  double t = 0.0;
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 acceleration = Vec3::Zero();
+  double t = 0.0;                    ///< time of the path, s
+  Vec3 position = Vec3::Zero();      ///< ENU, m
+  Vec3 velocity = Vec3::Zero();      ///< ENU, m/s
+  Vec3 acceleration = Vec3::Zero();  ///< ENU, m/s²
 };
 
 /// Points with strictly increasing times; empty: no path.

@@ -15,13 +15,15 @@ using Vec3 = Eigen::Vector3d;
 
 namespace jink::planner::base {
 
+/// Positive infinity: no bound.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An axis-aligned volume, bounds included. The default is unbounded.
 struct Box {
-  Vec3 min = Vec3::Constant(-kInfinity);
-  Vec3 max = Vec3::Constant(kInfinity);
+  Vec3 min = Vec3::Constant(-kInfinity);  ///< smallest coordinates, m
+  Vec3 max = Vec3::Constant(kInfinity);   ///< largest coordinates, m
 
+  /// Whether p is inside, or outside by no more than `tolerance` in each coordinate; false where a number is not one.
   [[nodiscard]] bool contains(const Vec3& p, double tolerance = 0.0) const {
     return ((p - min).array() >= -tolerance).all() && ((max - p).array() >= -tolerance).all();
   }
@@ -41,14 +43,14 @@ struct VehicleLimits {
 
 /// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion.
 struct Track {
-  std::uint64_t id = 0;
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 acceleration = Vec3::Zero();
-  double radius = 0.0;
-  double position_sigma = 0.0;  ///< standard deviation of the position, per axis
-  double velocity_sigma = 0.0;  ///< standard deviation of the velocity, per axis
-  double age = 0.0;             ///< time since the measurement that this is predicted from
+  std::uint64_t id = 0;              ///< as the writer of the track names it
+  Vec3 position = Vec3::Zero();      ///< of the centre, ENU, m
+  Vec3 velocity = Vec3::Zero();      ///< ENU, m/s
+  Vec3 acceleration = Vec3::Zero();  ///< ENU, m/s²
+  double radius = 0.0;               ///< m
+  double position_sigma = 0.0;       ///< standard deviation of the position, per axis
+  double velocity_sigma = 0.0;       ///< standard deviation of the velocity, per axis
+  double age = 0.0;                  ///< time since the measurement that this is predicted from
 };
 
 }  // namespace jink::planner::base

@@ -22,6 +22,7 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  /// Threads that work, the caller included.
   [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
   /// Calls task(i) once for each i in [0, count) and returns when all have returned. count <= 65535. The exception of

@@ -8,9 +8,10 @@
 
 namespace jink::planner::geometry {
 
+/// A ball, in the frame and unit of the points that it was made from.
 struct Sphere {
-  Vec3 center = Vec3::Zero();
-  double radius = 0.0;
+  Vec3 center = Vec3::Zero();  ///< its centre
+  double radius = 0.0;         ///< its radius, >= 0
 };
 
 /// The smallest sphere that contains all `points`, in their frame and unit. It is unique; duplicates, a single point,

@@ -19,13 +19,14 @@ double swept_distance_squared(const Vec3& a, const Vec3& b, const Vec3& c, const
 /// An orthonormal frame along the mission: axis from start to target, `left` level, `up` = axis × left. Where start and
 /// target coincide the axis is east; where the axis is vertical `left` is north.
 struct PathFrame {
-  Vec3 origin = Vec3::Zero();
-  Vec3 axis = Vec3::UnitX();
-  Vec3 left = Vec3::UnitY();
-  Vec3 up = Vec3::UnitZ();
-  double length = 0.0;
+  Vec3 origin = Vec3::Zero();  ///< the start, ENU, m
+  Vec3 axis = Vec3::UnitX();   ///< unit vector from start to target, ENU
+  Vec3 left = Vec3::UnitY();   ///< unit vector, level, ENU
+  Vec3 up = Vec3::UnitZ();     ///< axis × left, ENU
+  double length = 0.0;         ///< from start to target, m
 
   PathFrame() = default;
+  /// The frame from `start` to `target`, ENU, m. Any two finite points will do, also the same one twice.
   PathFrame(const Vec3& start, const Vec3& target);
 
   /// ENU point of coordinates along (axis, left, up).

@@ -52,6 +52,7 @@ class HorizonPlanner {
                       std::uint64_t number, const std::array<verify::SearchExtent, 2>& searches,
                       base::WorkerPool& pool);
 
+  /// The settings given at construction.
   [[nodiscard]] const base::HorizonSettings& settings() const { return settings_; }
   /// How far a plan looks ahead, s.
   [[nodiscard]] double horizon() const { return problem_.horizon(); }

@@ -24,11 +24,13 @@ struct Clearance {
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
 struct NearbyObstacle {
-  Vec3 from, to;                  ///< its centre when the step begins and ends
-  Vec3 middle;                    ///< halfway
-  double hard = 0.0, soft = 0.0;  ///< distances of the centres that are asked for: never less, better not less
-  double near = 0.0;              ///< from the middle: farther away, the soft distance is kept throughout the step
-  double near_squared = 0.0;      ///< near²
+  Vec3 from,                  ///< its centre when the step begins, ENU, m
+      to;                     ///< its centre when the step ends
+  Vec3 middle;                ///< halfway
+  double hard = 0.0,          ///< distance of the centres that is asked for, never less
+      soft = 0.0;             ///< distance of the centres that is asked for, better not less
+  double near = 0.0;          ///< from the middle: farther away, the soft distance is kept throughout the step
+  double near_squared = 0.0;  ///< near²
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
@@ -41,6 +43,7 @@ class NearbyObstacles {
   void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
              const Clearance& clearance, double step, std::span<const base::Box> where);
 
+  /// The obstacles of one step, 0 <= step < where.size() of the last build(); valid until the next.
   [[nodiscard]] std::span<const NearbyObstacle> during(int step) const {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};

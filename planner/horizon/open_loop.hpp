@@ -13,6 +13,7 @@
 
 namespace jink::planner::horizon {
 
+/// What an open-loop plan starts from.
 struct OpenLoopRequest {
   PathRequest path;         ///< from rest at the start; tracks valid at t = 0
   double time_limit = 0.0;  ///< the path is cut here

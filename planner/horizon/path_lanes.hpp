@@ -15,17 +15,25 @@
 
 namespace jink::planner::horizon {
 
+/// One number for each lane.
 template <std::size_t kLanes>
 struct alignas(kLanes >= 4 ? 32 : 8) Lanes {
-  std::array<double, kLanes> at{};
+  std::array<double, kLanes> at{};  ///< by lane
+
+  /// The number of lane i < kLanes.
   [[gnu::always_inline]] double& operator[](std::size_t i) { return at[i]; }
+  /// The number of lane i < kLanes.
   [[gnu::always_inline]] const double& operator[](std::size_t i) const { return at[i]; }
 };
 
+/// One point or vector for each lane, ENU.
 template <std::size_t kLanes>
 struct PointLanes {
-  Lanes<kLanes> x, y, z;
+  Lanes<kLanes> x,  ///< east
+      y,            ///< north
+      z;            ///< up
 
+  /// The same point in every lane.
   [[gnu::always_inline]] void set(const Vec3& p) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       x[i] = p.x();
@@ -39,6 +47,7 @@ struct PointLanes {
     for (std::size_t i = 0; i < kLanes; ++i) y[i] = p.y[i];
     for (std::size_t i = 0; i < kLanes; ++i) z[i] = p.z[i];
   }
+  /// The point of lane i < kLanes.
   [[nodiscard]] Vec3 lane(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
@@ -76,14 +85,21 @@ template <std::size_t kLanes>
 
 /// A box in plain numbers.
 struct PlainBox {
-  double min_x, min_y, min_z, max_x, max_y, max_z;
+  double min_x,  ///< west, m
+      min_y,     ///< south
+      min_z,     ///< bottom
+      max_x,     ///< east
+      max_y,     ///< north
+      max_z;     ///< top
 
+  /// How far `value` lies outside [low, high]; 0 inside.
   [[gnu::always_inline]] static double outside(double low, double high, double value) {
     const double below = low - value;
     const double above = value - high;
     const double more = below > above ? below : above;
     return more > 0.0 ? more : 0.0;
   }
+  /// Of a point to the box; 0 inside.
   [[gnu::always_inline]] [[nodiscard]] double squared_distance(const Vec3& p) const {
     const double x = outside(min_x, max_x, p.x());
     const double y = outside(min_y, max_y, p.y());
@@ -100,11 +116,15 @@ struct PlainBox {
 /// The flight that decision variables ask for, step by step.
 template <std::size_t kLanes>
 struct FlightLanes {
-  const PathScene& scene;
-  std::array<const double*, kLanes> x;      ///< the variables of each lane
-  PointLanes<kLanes> position, velocity;    ///< now
-  PointLanes<kLanes> begin, drift, wished;  ///< of the leg: first offset, its change in a second, last offset
+  const PathScene& scene;               ///< what all lanes share
+  std::array<const double*, kLanes> x;  ///< the variables of each lane
+  PointLanes<kLanes> position,          ///< now, m
+      velocity;                         ///< now, m/s
+  PointLanes<kLanes> begin,             ///< the leg's first offset, m
+      drift,                            ///< the offset's change in a second, m/s
+      wished;                           ///< the leg's last offset, m
 
+  /// At the start of the horizon. Keeps references to both arguments' data.
   [[gnu::always_inline]] FlightLanes(const PathScene& scene_, const std::array<const double*, kLanes>& x_)
       : scene(scene_), x(x_) {
     position.set(scene.position);
@@ -176,15 +196,23 @@ template <std::size_t kLanes>
 struct CostLanes {
   static constexpr std::size_t kStretch = 10;  ///< steps looked at together for what few paths meet
 
-  const PathScene& scene;
-  const NearbyObstacles& obstacles;
+  const PathScene& scene;                               ///< what all lanes share
+  const NearbyObstacles& obstacles;                     ///< what can be met, step by step
   std::size_t count = 0;                                ///< steps in the stretch
   std::array<PointLanes<kLanes>, kStretch + 1> places;  ///< where it begins, and after each of its steps
   std::array<Lanes<kLanes>, kStretch> moved;            ///< in each of its steps
-  PointLanes<kLanes> least, most;                       ///< of its places
-  PointLanes<kLanes> corner, direction;                 ///< the last leg's end and way
-  Lanes<kLanes> length, deviation, arrival, steering, dip, violation;
+  PointLanes<kLanes> least,                             ///< smallest coordinates of its places, m
+      most;                                             ///< largest coordinates of its places, m
+  PointLanes<kLanes> corner,                            ///< where the last leg ended
+      direction;                                        ///< the last leg's way, m; before the first leg the velocity
+  Lanes<kLanes> length,                                 ///< flown, m
+      deviation,                                        ///< distance from unobstructed flight, summed over the steps, m
+      arrival,                                          ///< end of the last step that did not end near the target, s
+      steering,                                         ///< sum of the angles between legs, Eq. (3), rad
+      dip,                                              ///< into the soft distances, as f3 counts it
+      violation;                                        ///< of the hard distances and the volume
 
+  /// All paths begin at `start`, at time 0. Keeps references to scene and obstacles.
   [[gnu::always_inline]] CostLanes(const PathScene& scene_, const NearbyObstacles& obstacles_,
                                    const PointLanes<kLanes>& start)
       : scene(scene_), obstacles(obstacles_) {
@@ -259,6 +287,7 @@ struct CostLanes {
     count = 0;
   }
 
+  /// Time `end`, s, counts for the paths that are then, at `to`, not yet near the target.
   [[gnu::always_inline]] void add_time(double end, const PointLanes<kLanes>& to) {
     const Vec3 target = scene.target;
     for (std::size_t i = 0; i < kLanes; ++i) {
@@ -269,6 +298,7 @@ struct CostLanes {
     }
   }
 
+  /// Violation for one step that ends at `to`: the distance outside the volume times the step's duration, m s.
   [[gnu::always_inline]] void add_outside(const PointLanes<kLanes>& to) {
     const base::Box& volume = scene.volume;
     for (std::size_t i = 0; i < kLanes; ++i) {

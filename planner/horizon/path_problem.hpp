@@ -18,12 +18,12 @@ namespace jink::planner::horizon {
 
 /// What a horizon plan starts from. Everything is valid at path time 0, tracks and the known paths' offsets too.
 struct PathRequest {
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 target = Vec3::Zero();
-  base::Box volume;
-  base::VehicleLimits vehicle;
-  std::span<const base::Track> tracks;
+  Vec3 position = Vec3::Zero();                  ///< of the vehicle, ENU, m
+  Vec3 velocity = Vec3::Zero();                  ///< of the vehicle, ENU, m/s
+  Vec3 target = Vec3::Zero();                    ///< where the path ends, ENU, m
+  base::Box volume;                              ///< that the path must not leave
+  base::VehicleLimits vehicle;                   ///< size, speeds, acceleration
+  std::span<const base::Track> tracks;           ///< obstacles whose motion is extrapolated
   std::span<const geometry::KnownPath> paths{};  ///< of vehicles that say where they will be
   double margin = 0.0;                           ///< kept from every obstacle on top of the radii
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
@@ -71,7 +71,9 @@ class PathProblem final : public optimizer::Problem {
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
   void encode_path(const base::TimedPath& path, std::span<double> x) const;
 
+  /// Steps in the horizon.
   [[nodiscard]] int steps() const { return scene_.steps; }
+  /// How far the problem looks ahead, s.
   [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
   /// How many obstacles can be met within the horizon.
   [[nodiscard]] std::size_t obstacles() const { return obstacles_.obstacles(); }

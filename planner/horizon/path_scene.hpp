@@ -50,29 +50,32 @@ struct Follower {
 
 /// How far a variable of ±1 moves a waypoint, m.
 struct Reach {
-  double ahead = 0.0, behind = 0.0, aside = 0.0;
+  double ahead = 0.0,  ///< along the axis, of a variable above 0
+      behind = 0.0,    ///< along the axis, of a variable below 0
+      aside = 0.0;     ///< to the left, and upwards
 };
 
+/// The request and the settings of one plan, and what follows from them for every solution. ENU, m, s.
 struct PathScene {
-  int waypoints = 0;
-  int steps_per_leg = 0;
-  int steps = 0;
-  double step = 0.0;  ///< s
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 target = Vec3::Zero();
-  std::optional<Vec3> via;  ///< over which the way on leads from where the horizon ends short of it
-  base::Box volume;
-  geometry::PathFrame frame;
-  Follower follower;
+  int waypoints = 0;               ///< K, legs of the horizon
+  int steps_per_leg = 0;           ///< between two waypoints
+  int steps = 0;                   ///< in the horizon
+  double step = 0.0;               ///< s
+  Vec3 position = Vec3::Zero();    ///< of the vehicle at time 0
+  Vec3 velocity = Vec3::Zero();    ///< of the vehicle at time 0
+  Vec3 target = Vec3::Zero();      ///< where the path ends
+  std::optional<Vec3> via;         ///< over which the way on leads from where the horizon ends short of it
+  base::Box volume;                ///< that the path must not leave
+  geometry::PathFrame frame;       ///< from the vehicle to the target
+  Follower follower;               ///< how the vehicle follows
   std::vector<Reach> reach;        ///< of each waypoint
   std::vector<Vec3> unobstructed;  ///< position after each step, the start first
   std::vector<double> speed;       ///< along the axis, likewise
   double cruise = 0.0;             ///< along the axis, the climb limit considered
   double unobstructed_time = 0.0;  ///< to the target
   double inverse_braking = 0.0;    ///< 1 / (2 · planned acceleration): times speed² the way to a stop
-  double time_weight = 0.0;
-  double deviation_weight = 0.0;
+  double time_weight = 0.0;        ///< HorizonSettings::time_weight, times kHurry where there is a `via`
+  double deviation_weight = 0.0;   ///< HorizonSettings::deviation_weight
 };
 
 }  // namespace jink::planner::horizon

@@ -24,6 +24,7 @@ class Archive {
   /// `capacity` > objectives, so that the extremes fit.
   Archive(std::size_t capacity, int dimension, int objectives);
 
+  /// Removes all members. O(capacity), allocates nothing.
   void clear();
 
   /// Adds a solution unless a member dominates or equals it; removes the members that it dominates. True when it was
@@ -46,11 +47,15 @@ class Archive {
     return members_[cell.begin + among];
   }
 
+  /// Number of members.
   [[nodiscard]] std::size_t size() const { return costs_.size(); }
+  /// Decision variables of member i < size(), `dimension` values. Valid until the archive changes.
   [[nodiscard]] std::span<const double> x(std::size_t i) const {
     return {x_.data() + slots_[i] * static_cast<std::size_t>(dimension_), static_cast<std::size_t>(dimension_)};
   }
+  /// Cost of member i < size().
   [[nodiscard]] const Cost& cost(std::size_t i) const { return costs_[i]; }
+  /// Costs of all members, in their order. Valid until the archive changes.
   [[nodiscard]] std::span<const Cost> costs() const { return costs_; }
 
  private:

@@ -7,12 +7,13 @@
 
 namespace jink::planner::optimizer {
 
+/// Values of two minimised objectives.
 using Point2 = std::array<double, 2>;
 
 /// Bounds to normalise fronts that are compared: the ideal and the nadir of their union.
 struct FrontBounds {
-  Point2 ideal{};
-  Point2 nadir{};
+  Point2 ideal{};  ///< the smallest value of each objective
+  Point2 nadir{};  ///< the largest value of each objective among the non-dominated points
 };
 /// Bounds of the union of `points`, of which the nadir is taken over the non-dominated ones. Precondition: not empty.
 FrontBounds front_bounds(std::span<const Point2> points);

@@ -41,7 +41,9 @@ class alignas(64) Momvo {
   /// Replaces the `rank`-th worst universe (0: the worst) of the last ranking.
   void replace_worst(std::size_t rank, std::span<const double> x);
 
+  /// The non-dominated solutions found since reset().
   [[nodiscard]] const Archive& archive() const { return archive_; }
+  /// How many universes this population has.
   [[nodiscard]] std::size_t universes() const { return universes_; }
 
  private:

@@ -70,6 +70,7 @@ enum class Move : unsigned char {
 /// Draws kinds of move in proportion to how often their results enter the archive.
 class MoveChoice {
  public:
+  /// Counts one move of this kind: whether its result entered the archive.
   void judge(Move move, bool success) {
     tries_[index(move)] += 1.0;
     successes_[index(move)] += success ? 1.0 : 0.0;
@@ -85,7 +86,9 @@ class MoveChoice {
       successes_[k] *= kMemory;
     }
   }
+  /// A kind of move, kNarrow with probability narrow_share().
   Move draw(base::RandomStream& random) const { return random.uniform() < narrow_share_ ? Move::kNarrow : Move::kWide; }
+  /// Probability of a narrow move, in [0.1, 0.9].
   [[nodiscard]] double narrow_share() const { return narrow_share_; }
 
  private:

@@ -18,11 +18,13 @@ namespace jink::planner::optimizer {
 
 /// A set of mutually non-dominated solutions: costs[i] belongs to x[i * dimension .. (i + 1) * dimension).
 struct Front {
-  int dimension = 0;
-  std::vector<double> x;
-  std::vector<Cost> costs;
+  int dimension = 0;        ///< variables of a solution
+  std::vector<double> x;    ///< size() · dimension values, one solution after the other
+  std::vector<Cost> costs;  ///< size() values
 
+  /// Number of solutions.
   [[nodiscard]] std::size_t size() const { return costs.size(); }
+  /// Decision variables of solution i < size().
   [[nodiscard]] std::span<const double> solution(std::size_t i) const {
     const auto d = static_cast<std::size_t>(dimension);
     return {x.data() + i * d, d};
@@ -31,9 +33,9 @@ struct Front {
 
 /// What a run did.
 struct RunReport {
-  std::int64_t evaluations = 0;
-  int generations = 0;
-  bool deadline_reached = false;
+  std::int64_t evaluations = 0;   ///< solutions evaluated
+  int generations = 0;            ///< generations done
+  bool deadline_reached = false;  ///< the deadline ended the run before its last generation
 };
 
 /// An optimizer for problems of one shape (dimension and number of objectives, given at construction).

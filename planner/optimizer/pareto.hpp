@@ -10,12 +10,13 @@
 
 namespace jink::planner::optimizer {
 
+/// The most objectives that a problem may have.
 inline constexpr int kMaxObjectives = 3;
 
 /// What evaluating one solution gives. Unused objectives are 0.
 struct Cost {
-  std::array<double, kMaxObjectives> f{};
-  double violation = 0.0;  ///< total constraint violation, 0: feasible
+  std::array<double, kMaxObjectives> f{};  ///< objectives, minimised
+  double violation = 0.0;                  ///< total constraint violation, 0: feasible
 };
 
 /// Replaces a cost with any NaN or infinity by the worst cost there is, so that it ranks last everywhere.
@@ -44,6 +45,7 @@ inline bool dominates(const Cost& a, const Cost& b, int objectives) {
 /// sequential search (Zhang et al. 2015): O(n log n + n · fronts) for two objectives, at worst O(n²) for more.
 class Ranking {
  public:
+  /// Takes the memory for `capacity` solutions.
   explicit Ranking(std::size_t capacity);
 
   /// Indices of `costs`, best first, valid until the next call. Preconditions: finite costs, at most `capacity` of

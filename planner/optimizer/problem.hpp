@@ -13,10 +13,11 @@ namespace jink::planner::optimizer {
 class Problem {
  public:
   virtual ~Problem() = default;
-  [[nodiscard]] virtual int dimension() const = 0;
+  [[nodiscard]] virtual int dimension() const = 0;                  ///< number of decision variables
   [[nodiscard]] virtual int objectives() const = 0;                 ///< 1 .. kMaxObjectives
-  [[nodiscard]] virtual std::span<const double> lower() const = 0;  ///< dimension() values
-  [[nodiscard]] virtual std::span<const double> upper() const = 0;
+  [[nodiscard]] virtual std::span<const double> lower() const = 0;  ///< bounds, dimension() values
+  [[nodiscard]] virtual std::span<const double> upper() const = 0;  ///< bounds, dimension() values
+
   /// Costs of costs.size() solutions; `x` holds them one after the other, dimension() values each, within the box.
   virtual void evaluate(std::span<const double> x, std::span<Cost> costs) const = 0;
 };

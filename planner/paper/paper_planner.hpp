@@ -14,15 +14,16 @@
 
 namespace jink::planner::paper {
 
+/// What a path in paper mode is planned from.
 struct PaperRequest {
-  Vec3 start = Vec3::Zero();
-  Vec3 target = Vec3::Zero();
-  base::Box volume;  ///< the path stays inside; start and target are
-  base::VehicleLimits vehicle;
-  std::span<const base::Track> tracks;  ///< valid at t = 0
-  base::OptimizerSettings optimizer;
-  base::PaperSettings settings;
-  std::uint64_t seed = 1;
+  Vec3 start = Vec3::Zero();                                ///< first waypoint, ENU, m
+  Vec3 target = Vec3::Zero();                               ///< last waypoint, ENU, m
+  base::Box volume;                                         ///< the path stays inside; start and target are
+  base::VehicleLimits vehicle;                              ///< size and speeds
+  std::span<const base::Track> tracks;                      ///< valid at t = 0
+  base::OptimizerSettings optimizer;                        ///< of the PMOMVO that solves each step
+  base::PaperSettings settings;                             ///< of the steps
+  std::uint64_t seed = 1;                                   ///< of all random numbers
   base::Budget::Time deadline = base::Budget::Time::max();  ///< no step starts after it; the rest is then straight
 };
 

@@ -26,18 +26,20 @@ double segment_duration(const Vec3& from, const Vec3& to, const base::VehicleLim
 /// vehicle's.
 class WaypointProblem final : public optimizer::Problem {
  public:
+  /// One step's places and bounds. ENU, m.
   struct Step {
     Vec3 from = Vec3::Zero();       ///< w_i
     Vec3 direction = Vec3::Zero();  ///< of the segment before, any length; at the start: towards the target
-    Vec3 target = Vec3::Zero();
-    Vec3 base = Vec3::Zero();      ///< the next station's point on the straight line
-    Vec3 lateral1 = Vec3::Zero();  ///< unit vectors of the two variables, which are offsets from `base`, m
-    Vec3 lateral2 = Vec3::Zero();
-    std::array<double, 2> lower{};  ///< bounds of the offsets
-    std::array<double, 2> upper{};
-    base::Box volume;  ///< a waypoint that the bounds let out of it is moved to its nearest point
+    Vec3 target = Vec3::Zero();     ///< where the mission ends
+    Vec3 base = Vec3::Zero();       ///< the next station's point on the straight line
+    Vec3 lateral1 = Vec3::Zero();   ///< unit vector of the first variable, an offset from `base`, m
+    Vec3 lateral2 = Vec3::Zero();   ///< unit vector of the second variable, likewise
+    std::array<double, 2> lower{};  ///< lower bounds of the offsets
+    std::array<double, 2> upper{};  ///< upper bounds of the offsets
+    base::Box volume;               ///< a waypoint that the bounds let out of it is moved to its nearest point
   };
 
+  /// For a vehicle of these limits; prepare() comes before all else.
   WaypointProblem(const base::PaperSettings& settings, const base::VehicleLimits& vehicle)
       : settings_(settings), vehicle_(vehicle) {}
 
@@ -57,7 +59,7 @@ class WaypointProblem final : public optimizer::Problem {
   }
   /// Sum of squared constraint values max(0, g)² + max(0, h)² of the segment to `to`; 0: feasible.
   [[nodiscard]] double violation(const Vec3& to) const;
-  /// Virtual spheres of narrow passes now active; for tests and pictures.
+  /// Virtual spheres of narrow passes now active; for tests and figures.
   [[nodiscard]] std::span<const base::Track> virtual_spheres() const { return virtual_spheres_; }
 
  private:

@@ -15,6 +15,7 @@
 
 namespace jink::planner::verify {
 
+/// What is known of a plan's path.
 enum class PlanStatus {
   kReaches,       ///< free, verified, to the target
   kProgresses,    ///< free, verified, for the time looked ahead; beyond that nothing is claimed
@@ -22,6 +23,7 @@ enum class PlanStatus {
   kStartBlocked,  ///< the vehicle is inside an obstacle at the start
   kInvalid        ///< the request holds a number that is not finite; there is no path
 };
+/// The status as the flight log has it: reaches, progresses, blocked, start_blocked or invalid.
 std::string_view to_string(PlanStatus status);
 
 /// Whether a vehicle of this radius stands inside an obstacle at time 0.
@@ -30,22 +32,26 @@ std::string_view to_string(PlanStatus status);
 
 /// How far a search went: the generations that were scheduled, and of these the ones done. 0, 0: it was not made.
 struct SearchExtent {
-  int schedule = 0;
-  int generations = 0;
+  int schedule = 0;     ///< generations scheduled
+  int generations = 0;  ///< generations done
+
+  /// Equal in both numbers.
   bool operator==(const SearchExtent&) const = default;
 };
 
+/// A path, what the verifier says of it, and how it was found.
 struct Plan {
-  PlanStatus status = PlanStatus::kInvalid;
-  base::TimedPath path;
-  Verification verification;
-  std::int64_t evaluations = 0;
-  int schedule = 0;     ///< generations that were scheduled in the search that gave the path
-  int generations = 0;  ///< generations that were done in it
+  PlanStatus status = PlanStatus::kInvalid;  ///< what is known of the path
+  base::TimedPath path;                      ///< ENU, from time 0 on; empty where the status is kInvalid
+  Verification verification;                 ///< of the path, in continuous time
+  std::int64_t evaluations = 0;              ///< solutions evaluated in all searches
+  int schedule = 0;                          ///< generations that were scheduled in the search that gave the path
+  int generations = 0;                       ///< generations that were done in it
+
   /// Horizon mode: the search with the acceleration that plans normally use, and the one with more. With these, the
   /// arguments and the seed the plan can be repeated.
   std::array<SearchExtent, 2> searches{};
-  bool deadline_reached = false;
+  bool deadline_reached = false;             ///< a deadline ended the search
   bool kept_previous = false;                ///< the plan before was kept
   bool emergency = false;                    ///< more acceleration is used than plans normally may
   std::vector<std::array<double, 2>> front;  ///< the first two objectives of the (first) front

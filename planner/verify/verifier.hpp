@@ -27,12 +27,13 @@ struct Verification {
   [[nodiscard]] bool free() const { return valid && !first_contact && inside_volume; }
 };
 
+/// What is checked, and against what. ENU, m, s.
 struct VerifierInput {
-  std::span<const base::TimedPoint> path;  ///< vehicle; constant velocity between points
-  std::span<const base::Track> tracks;     ///< valid at the path time `tracks_time`
-  double tracks_time = 0.0;                ///< not after the path's first time
-  double vehicle_radius = 0.0;
-  base::Box volume;
+  std::span<const base::TimedPoint> path;        ///< vehicle; constant velocity between points
+  std::span<const base::Track> tracks;           ///< valid at the path time `tracks_time`
+  double tracks_time = 0.0;                      ///< not after the path's first time
+  double vehicle_radius = 0.0;                   ///< of the sphere around the vehicle
+  base::Box volume;                              ///< that the path must not leave
   double acceleration_trust = base::kInfinity;   ///< as in predict_position, from the measurement on
   double until = base::kInfinity;                ///< path time up to which obstacles count
   std::span<const geometry::KnownPath> known{};  ///< offsets and `until` count from `tracks_time`; margins do not count
