@@ -54,8 +54,8 @@ class BaselineTask final : public bridge::companion::PlannerTask {
 
 /// The plan that flies `path`, judged as jink's own: kBlocked where it is not free for the time that is looked ahead,
 /// kReaches where it is free to the target, else kProgresses.
-[[nodiscard]] planner::verify::Plan judged(planner::base::TimedPath path, const planner::horizon::PathRequest& request,
-                                           double horizon);
+[[nodiscard]] planner::verify::Plan verified_plan(planner::base::TimedPath path,
+                                                  const planner::horizon::PathRequest& request, double horizon);
 
 /// Whether `a` does less harm than `b`: free before not free, then free for longer, then the softer contact.
 [[nodiscard]] bool is_safer(const planner::verify::Verification& a, const planner::verify::Verification& b);
