@@ -104,7 +104,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return jink::bench::run(argc, argv);
+    return jink::tools::lab::bench::run(argc, argv);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "jink_bench: %s\n", e.what());
     return 1;
