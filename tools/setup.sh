@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 packages=(
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
   libeigen3-dev libyaml-cpp-dev libgtest-dev
-  libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev libcairo2-dev fonts-dejavu-core
+  libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev fonts-dejavu-core
   libfastrtps-dev libfastcdr-dev fastddsgen libompl-dev libpagmo-dev libboost-math-dev gnuplot-nox
   python3 python3-venv
   clang-format-14 clang-tidy-14

@@ -11,7 +11,6 @@ tools/setup.sh "${groups[@]}"
 tools/build.sh "$preset" ${JINK_TARGETS:-}
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
 if [ "$preset" = asan ]; then
-  export LSAN_OPTIONS="suppressions=$PWD/tests/support/lsan.supp print_suppressions=0 ${LSAN_OPTIONS:-}"
   # Fast DDS 2.9 deletes the statistics part of its writers through a base of another size.
   export ASAN_OPTIONS="new_delete_type_mismatch=0 ${ASAN_OPTIONS:-}"
 fi

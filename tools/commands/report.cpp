@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/cli/command_line.hpp"
+#include "tools/figures/figure.hpp"
 #include "tools/report/figure.hpp"
 #include "tools/report/html_report.hpp"
 
@@ -65,6 +66,9 @@ int run(const ReportOptions& options) {
     }
     if (!options.png.empty())
       tell(options.png, options.logs[0], report::write_figure(sources[0], options.png, options.at));
+  } catch (const jink::tools::figures::GnuplotMissing& error) {
+    fmt::print(stderr, "jink: --png: {}\n", error.what());
+    return base::kExitMissingPeer;
   } catch (const std::runtime_error& error) {
     throw cli::UsageError(error.what());
   }

@@ -5,8 +5,6 @@
 #include <concepts>
 #include <stdexcept>
 
-#include "tools/report/crc32.hpp"
-
 namespace jink::tools::mcap {
 namespace {
 
@@ -84,7 +82,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, std::string_view profi
 void McapWriter::put(std::string_view bytes) {
   out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   at_ += bytes.size();
-  crc_ = report::crc32(bytes, crc_);
+  crc_.process_bytes(bytes.data(), bytes.size());
 }
 
 McapWriter::Id McapWriter::add_schema(std::string_view name, std::string_view json_schema) {
@@ -127,8 +125,10 @@ void McapWriter::end_chunk() {
   }
   place.start = at_;
   place.size = chunk_.size();
+  boost::crc_32_type crc;
+  crc.process_bytes(chunk_.data(), chunk_.size());
   Fields fields;
-  fields.number(place.first_ns).number(place.last_ns).number(place.size).number(report::crc32(chunk_)).text("");
+  fields.number(place.first_ns).number(place.last_ns).number(place.size).number(crc.checksum()).text("");
   fields.number(place.size).raw(chunk_);
   put(record(Op::kChunk, fields));
   place.length = at_ - place.start;
@@ -181,9 +181,9 @@ std::string McapWriter::statistics() const {
 
 void McapWriter::close() {
   end_chunk();
-  put(record(Op::kDataEnd, Fields().number(crc_)));
+  put(record(Op::kDataEnd, Fields().number(crc_.checksum())));
   const std::uint64_t summary_start = at_;
-  crc_ = 0;  // from here on that of the summary
+  crc_.reset();  // from here on that of the summary
   std::string offsets;
   const auto group = [&](Op op, const std::string& records) {
     if (records.empty()) return;
@@ -202,7 +202,7 @@ void McapWriter::close() {
   Fields footer;
   footer.number(static_cast<std::uint8_t>(Op::kFooter)).number(kFooterBytes);
   put(footer.number(summary_start).number(offsets_start).bytes());
-  put(Fields().number(crc_).bytes());  // the argument is made before crc_ changes
+  put(Fields().number(crc_.checksum()).bytes());  // the argument is made before crc_ changes
   put(kMagic);
   out_.close();
   if (!out_) throw std::runtime_error(file_.string() + ": could not be written to its end");

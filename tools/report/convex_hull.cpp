@@ -36,24 +36,7 @@ double height(Points points, const Triangle& f, const Vec3& p) {
 
 /// The hull of points in the plane with that normal, fanned out and seen from both sides.
 std::vector<Triangle> flat_hull(Points points, const Vec3& normal, double tolerance) {
-  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-  std::vector<std::size_t> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto key = [&](std::size_t i) { return std::pair(u.dot(points[i]), v.dot(points[i])); };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-  std::vector<std::size_t> ring;  // monotone chain: lower, then upper
-  const auto add = [&](std::size_t i, std::size_t least) {
-    const auto turns_right = [&] {
-      const Vec3 a = points[ring[ring.size() - 2]], b = points[ring.back()];
-      return (b - a).cross(points[i] - b).dot(normal) <= tolerance * (b - a).norm();
-    };
-    while (ring.size() > least && turns_right()) ring.pop_back();
-    ring.push_back(i);
-  };
-  for (const std::size_t i : order) add(i, 1);
-  const std::size_t lower = ring.size();
-  for (auto i = order.rbegin() + 1; i != order.rend(); ++i) add(*i, lower);
-  ring.pop_back();  // the first again
+  const std::vector<std::size_t> ring = hull_ring(points, normal, tolerance);
   std::vector<Triangle> faces;
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
     faces.push_back({ring[0], ring[i], ring[i + 1]});
@@ -78,6 +61,28 @@ void add_point(Points points, std::vector<Triangle>& faces, std::size_t i, doubl
 }
 
 }  // namespace
+
+std::vector<std::size_t> hull_ring(Points points, const Vec3& normal, double tolerance) {
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto key = [&](std::size_t i) { return std::pair(u.dot(points[i]), v.dot(points[i])); };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  std::vector<std::size_t> ring;  // monotone chain: lower, then upper
+  const auto add = [&](std::size_t i, std::size_t least) {
+    const auto turns_right = [&] {
+      const Vec3 a = points[ring[ring.size() - 2]], b = points[ring.back()];
+      return (b - a).cross(points[i] - b).dot(normal) <= tolerance * (b - a).norm();
+    };
+    while (ring.size() > least && turns_right()) ring.pop_back();
+    ring.push_back(i);
+  };
+  for (const std::size_t i : order) add(i, 1);
+  const std::size_t lower = ring.size();
+  for (auto i = order.rbegin() + 1; i != order.rend(); ++i) add(*i, lower);
+  if (ring.size() > 1) ring.pop_back();  // the first again
+  return ring;
+}
 
 std::vector<Triangle> convex_hull(Points points) {
   const std::size_t a = 0;

@@ -19,4 +19,8 @@ using Triangle = std::array<std::size_t, 3>;
 /// point, all finite. Points within 1e-9 of the set's size of a face are taken as on it. O(n f) for f faces.
 std::vector<Triangle> convex_hull(std::span<const Vec3> points);
 
+/// The corners of the convex hull of points in the plane with that normal, in order around it. `tolerance` in m: what
+/// is less far out is no corner. Requires at least one point.
+std::vector<std::size_t> hull_ring(std::span<const Vec3> points, const Vec3& normal, double tolerance = 0.0);
+
 }  // namespace jink::tools::report

@@ -5,7 +5,7 @@
 //   setpoints {t, p, speed}; shapes {id: {box}|{vertices, faces}} of obstacles that are no spheres;
 //   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz,ax,ay,az,age),...], ...]};
 //   plans [{t, ms, status, kept, missed, path [t,x,y,z,...], trust?, known? [{id, radius, path}]}];
-//   events [[t, name, detail]]; clearance null | {from: "true"|"tracks", t, d, min {t, d}};
+//   events [[t, name, detail, "good"|"warn"|"bad"|""]]; clearance null | {from: "true"|"tracks", t, d, min {t, d}};
 //   summary null | jink-flight/1; derived {...}}].
 const kOldestTracks = 1.0;     // s, without a message after which tracks are no longer drawn
 const kOldestObstacles = 0.5;  // s, the same for true obstacles
@@ -86,15 +86,6 @@ function prediction(track, trust) {
 }
 
 const isBlocked = (plan) => plan.status !== "reaches" && plan.status !== "progresses";
-
-/** How an event is coloured: good, warn, bad or nothing. */
-function tone(name, detail) {
-  if (name === "reached" || /^done: reached/.test(detail)) return "good";
-  if (/^(collision|timeout|left_world|start_blocked|aborted)$/.test(name)) return "bad";
-  if (/^done: (?!reached)/.test(detail)) return "bad";
-  if (name === "plan_status") return /^(blocked|start_blocked|invalid)$/.test(detail) ? "bad" : "";
-  return /^(fault|hazard|refused|send_failed|reference_lost|tracks_refused|log_dropped)$/.test(name) ? "warn" : "";
-}
 
 class Flight {
   constructor(raw, index) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much an event of a flight log matters; the page's data.js has the same.
+// How much an event of a flight log matters, in the page and in the figure.
 #pragma once
 
 #include <algorithm>

@@ -11,8 +11,9 @@ namespace jink::tools::report {
 namespace {
 
 // mm
-constexpr double kLeft = 14.0, kRight = 4.0, kTop = 4.0, kTitle = 11.0;
-constexpr double kTallestView = 70.0, kBetween = 4.0, kAxis = 9.0, kLegend = 7.0, kPlots = 98.0;
+constexpr double kLeft = 17.0, kRight = 4.0, kTop = 15.0;
+constexpr double kTallestView = 70.0, kBetween = 4.0, kAxis = 11.0;
+constexpr double kEvents = 4.5, kPanel = 19.0, kGap = 3.0;
 
 std::string text_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
@@ -60,8 +61,8 @@ double instant(const FigureFlight& flight, const std::filesystem::path& log, std
 
 }  // namespace
 
-ReportResult write_figure(const ReportSource& source, const std::filesystem::path& file, std::optional<double> at) {
-  const FlightData data = read_flight(source.log);
+jink::tools::figures::Figure flight_figure(const FlightData& data, const ReportSource& source,
+                                           std::optional<double> at) {
   FigureFlight flight{data};
   if (flight.motion().empty()) throw std::runtime_error(source.log.string() + ": holds no flight to draw");
   flight.clearance = true_clearance(data);
@@ -72,24 +73,26 @@ ReportResult write_figure(const ReportSource& source, const std::filesystem::pat
   const double width = kFigureWidth_mm - kLeft - kRight;
   const FigureScale scale = figure_scale(flight, width, kTallestView);
   const double above = view_height(scale, true), beside = view_height(scale, false);
-  const double views = kTop + kTitle + above + kBetween + beside + kAxis;
-  Canvas canvas(kFigureWidth_mm, views + kLegend + kPlots, kFigureResolution_dpi);
-
-  const nlohmann::json figures = report_data(data, source.summary ? &*source.summary : nullptr);
-  std::string name = text_of(data.header, "scenario") + text_of(data.header, "mission");
-  if (name.empty()) name = source.log.filename().string();
-  canvas.text({kLeft, kTop + 1.5}, name, {.size = 3.6, .bold = true});
-  canvas.text({kLeft, kTop + 6.5}, outcome_text(figures), {.size = 2.6, .color = "#45525f"});
+  const double views_end = kTop + above + kBetween + beside + kAxis;
+  jink::tools::figures::Figure figure{.id = "flight", .title = source.log.filename().string(), .panels = {}};
+  figure.panels = time_panels(flight, {kLeft, views_end + kEvents, width, kPanel}, kGap);
+  figure.width_mm = kFigureWidth_mm;
+  figure.height_mm = views_end + kEvents + static_cast<double>(figure.panels.size()) * (kPanel + kGap) - kGap + kAxis;
+  figure.panels.insert(figure.panels.begin(),
+                       {view_panel(flight, scale, true, {kLeft, kTop, width, above}),
+                        view_panel(flight, scale, false, {kLeft, kTop + above + kBetween, width, beside})});
+  figure.heading = text_of(data.header, "scenario") + text_of(data.header, "mission");
+  if (figure.heading.empty()) figure.heading = source.log.filename().string();
+  figure.subheading = outcome_text(report_data(data, source.summary ? &*source.summary : nullptr));
   std::array<char, 64> shown{};
   std::snprintf(shown.data(), shown.size(), "shown as it was at %.2f s", flight.at);
-  canvas.text({kFigureWidth_mm - kRight, kTop + 1.5}, shown.data(),
-              {.size = 2.6, .align = Align::kRight, .color = "#45525f"});
+  figure.remark = shown.data();
+  return figure;
+}
 
-  draw_view(canvas, flight, scale, true, {kLeft, kTop + kTitle, width, above});
-  draw_view(canvas, flight, scale, false, {kLeft, kTop + kTitle + above + kBetween, width, beside});
-  draw_legend(canvas, flight, {kLeft, views + 1.5}, width);
-  draw_plots(canvas, flight, {kLeft, views + kLegend, width, kPlots - 2.0});
-  write_atomically(file, canvas.png(), "the figure");
+ReportResult write_figure(const ReportSource& source, const std::filesystem::path& file, std::optional<double> at) {
+  const FlightData data = read_flight(source.log);
+  write_atomically(file, jink::tools::figures::png_of(flight_figure(data, source, at)), "the figure");
   return {data.lines, data.cut_off + data.not_finite + data.unknown};
 }
 

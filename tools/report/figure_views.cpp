@@ -1,44 +1,114 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <variant>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "tools/report/convex_hull.hpp"
 #include "tools/report/figure_parts.hpp"
 
 namespace jink::tools::report {
 namespace {
+
+using jink::tools::figures::Kind;
+using jink::tools::figures::Look;
+using jink::tools::figures::Panel;
+using jink::tools::figures::Series;
 
 constexpr double kPad = 2.0;         // m, before and behind the flown way
 constexpr double kBeside = 3.5;      // m, beside it
 constexpr double kTrail = 2.0;       // s, of an obstacle's way before and after the instant
 constexpr double kAheadStep = 0.1;   // s
 constexpr double kMostExtent = 1e5;  // m; nothing that flies a log's length goes further
-constexpr std::string_view kSetpoint = "#a3adb8";
-constexpr std::array<const char*, 3> kAxes{"east", "north", "up"};
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<const char*, 3> kAxes{"East (m)", "North (m)", "Up (m)"};
 
-/// A view: from metres to the sheet.
-struct View {
-  const FigureScale& scale;
-  bool from_above = true;
-  Frame frame{};
-
-  [[nodiscard]] std::size_t down_axis() const { return from_above ? 1 - scale.across : 2; }
-  /// Where north runs across, east runs down: so it is seen from above and not from below.
-  [[nodiscard]] bool flipped() const { return from_above && scale.across == 1; }
-  [[nodiscard]] Spot spot(const Triple& p) const {
-    const std::size_t k = down_axis();
-    const double above = flipped() ? p[k] - scale.low[k] : scale.high[k] - p[k];
-    return {frame.x + (p[scale.across] - scale.low[scale.across]) * scale.scale, frame.y + above * scale.scale};
-  }
-};
-
-Triple triple(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
+std::string text_of(std::string_view text) {
+  return std::string(text);
 }
 Vec3 vector(const Triple& v) {
   return {v[0], v[1], v[2]};
 }
+Triple triple(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// A series of places as one view shows them.
+class Drawing {
+ public:
+  Drawing(const FigureScale& scale, bool from_above, std::string label, Kind kind, Look look)
+      : scale_(scale), up_(from_above ? 1 - scale.across : 2) {
+    series_.label = std::move(label);
+    series_.kind = kind;
+    series_.look = std::move(look);
+  }
+
+  void add(const Triple& p) { put(p[scale_.across], p[up_]); }
+  void gap() { put(kNone, kNone); }
+  void add_way(const std::vector<MotionSample>& motion) {
+    double last = -std::numeric_limits<double>::infinity();
+    for (const MotionSample& sample : motion) {
+      if (sample.t - last > kMissing) gap();
+      add(sample.position);
+      last = sample.t;
+    }
+    gap();
+  }
+  void add_disc(const Triple& centre, double radius) {
+    constexpr int kCorners = 48;
+    for (int i = 0; i <= kCorners; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kCorners;
+      put(centre[scale_.across] + radius * std::cos(angle), centre[up_] + radius * std::sin(angle));
+    }
+    gap();
+  }
+  /// The silhouette of a solid with these corners.
+  void add_outline(const std::vector<Triple>& corners) {
+    std::vector<Vec3> seen;
+    for (const Triple& p : corners) seen.emplace_back(p[scale_.across], p[up_], 0.0);
+    std::vector<std::size_t> ring = hull_ring(seen, Vec3::UnitZ());
+    ring.push_back(ring.front());
+    for (const std::size_t i : ring) put(seen[i].x(), seen[i].y());
+    gap();
+  }
+  /// Into the panel, where there is anything to draw.
+  void add_to(Panel& panel) && {
+    const auto drawn = [](double y) { return std::isfinite(y); };
+    if (std::any_of(series_.y.begin(), series_.y.end(), drawn)) panel.series.push_back(std::move(series_));
+  }
+
+ private:
+  void put(double x, double y) {
+    const bool finite = std::isfinite(x) && std::isfinite(y);
+    series_.x.push_back(finite ? x : kNone);
+    series_.y.push_back(finite ? y : kNone);
+  }
+
+  const FigureScale& scale_;
+  std::size_t up_;
+  Series series_{};
+};
+
+/// One view while it is filled, from what lies below to what lies on top.
+struct View {
+  const FigureFlight& flight;
+  const FigureScale& scale;
+  bool from_above = true;
+  Panel panel{};
+
+  [[nodiscard]] Drawing drawing(std::string label, Kind kind, Look look) const {
+    return {scale, from_above, std::move(label), kind, std::move(look)};
+  }
+  [[nodiscard]] double metres(double mm) const { return mm / scale.scale; }
+  /// Text above a place, or below it, where that is in the view.
+  void note(const Triple& p, std::string text, double above) {
+    const std::size_t a = scale.across, u = from_above ? 1 - a : 2;
+    if (p[a] < scale.low[a] || p[a] > scale.high[a] || p[u] < scale.low[u] || p[u] > scale.high[u]) return;
+    panel.notes.push_back({.x = p[a], .y = p[u], .text = std::move(text), .above = above});
+  }
+};
 
 template <typename Sample>
 const Sample* newest(const std::vector<Sample>& samples, double t) {
@@ -47,44 +117,12 @@ const Sample* newest(const std::vector<Sample>& samples, double t) {
   return next == samples.begin() ? nullptr : &*std::prev(next);
 }
 
-void draw_way(Canvas& canvas, const View& view, const std::vector<MotionSample>& motion, double from, double to,
-              const Pen& pen) {
-  std::vector<Spot> spots;
-  for (const MotionSample& sample : motion) {
-    if (sample.t >= from && sample.t <= to) spots.push_back(view.spot(sample.position));
-  }
-  canvas.line(spots, pen);
-}
-
-/// The corners of the convex hull of some spots, in order (monotone chain).
-std::vector<Spot> outline(std::vector<Spot> spots) {
-  std::sort(spots.begin(), spots.end());
-  std::vector<Spot> ring;
-  const auto add = [&](const Spot& p, std::size_t least) {
-    const auto turns = [&] {
-      const Spot &a = ring[ring.size() - 2], &b = ring.back();
-      return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) <= 0.0;
-    };
-    while (ring.size() > least && turns()) ring.pop_back();
-    ring.push_back(p);
-  };
-  for (const Spot& p : spots) add(p, 1);
-  const std::size_t lower = ring.size();
-  for (auto p = spots.rbegin() + 1; p != spots.rend(); ++p) add(*p, lower);
-  if (ring.size() > 1) ring.pop_back();
-  return ring;
-}
-
-/// The silhouette of an obstacle's true shape.
-void draw_obstacle(Canvas& canvas, const View& view, const FlightData& flight, const Body& body) {
-  const Pen edge{.color = "#7a5510", .width = 0.2};
+/// The corners of an obstacle that is no sphere; none of one that is.
+std::vector<Triple> corners_of(const FlightData& flight, const Body& body) {
+  std::vector<Triple> corners;
   const auto shape = flight.shapes.find(body.id);
-  if (shape == flight.shapes.end()) {
-    canvas.circle(view.spot(body.position), body.radius * view.scale.scale, FigureColors::kObstacle, 1.0, edge);
-    return;
-  }
-  std::vector<Spot> corners;
-  const auto add = [&](const Vec3& corner) { corners.push_back(view.spot(triple(vector(body.position) + corner))); };
+  if (shape == flight.shapes.end()) return corners;
+  const auto add = [&](const Vec3& corner) { corners.push_back(triple(vector(body.position) + corner)); };
   if (const auto* box = std::get_if<config::BoxShape>(&shape->second)) {
     for (const unsigned i : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
       const Vec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
@@ -93,115 +131,137 @@ void draw_obstacle(Canvas& canvas, const View& view, const FlightData& flight, c
   } else if (const auto* hull = std::get_if<config::VertexShape>(&shape->second)) {
     for (const Vec3& vertex : hull->vertices) add(vertex);
   }
-  canvas.polygon(outline(std::move(corners)), FigureColors::kObstacle, 1.0, edge);
+  return corners;
 }
 
 /// Where each obstacle was shortly before the instant and will be shortly after it.
-void draw_trails(Canvas& canvas, const View& view, const FigureFlight& flight) {
-  std::map<std::uint64_t, std::vector<Spot>> trails;
-  for (const BodyFrame& frame : flight.data.obstacles) {
-    if (std::abs(frame.t - flight.at) > kTrail) continue;
-    for (const Body& body : frame.bodies) trails[body.id].push_back(view.spot(body.position));
+void add_trails(View& view) {
+  std::map<std::uint64_t, std::vector<Triple>> trails;
+  for (const BodyFrame& frame : view.flight.data.obstacles) {
+    if (std::abs(frame.t - view.flight.at) > kTrail) continue;
+    for (const Body& body : frame.bodies) trails[body.id].push_back(body.position);
   }
-  for (const auto& [id, trail] : trails)
-    canvas.line(trail, {.color = FigureColors::kObstacle, .width = 0.3, .opacity = 0.7});
+  Drawing ways =
+      view.drawing("its way, 2 s each way", Kind::line, {.colour = text_of(FigureColors::kObstacle), .width = 1.0});
+  for (const auto& [id, trail] : trails) {
+    for (const Triple& p : trail) ways.add(p);
+    ways.gap();
+  }
+  std::move(ways).add_to(view.panel);
 }
 
-void draw_tracks(Canvas& canvas, const View& view, const FigureFlight& flight) {
-  const BodyFrame* frame = newest(flight.data.tracks, flight.at);
+void add_obstacles(View& view) {
+  const BodyFrame* frame = newest(view.flight.data.obstacles, view.flight.at);
   if (frame == nullptr) return;
-  const PlanRecord* plan = flight.plan();
+  std::vector<Body> bodies = frame->bodies;  // from far to near
+  const std::size_t depth = view.from_above ? 2 : 1 - view.scale.across;
+  const double sign = !view.from_above && view.scale.across == 0 ? -1.0 : 1.0;
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [&](const Body& a, const Body& b) { return sign * a.position[depth] < sign * b.position[depth]; });
+  Drawing shapes = view.drawing("obstacle", Kind::areas,
+                                {.colour = text_of(FigureColors::kObstacle), .width = 0.7, .edge = "#7a5510"});
+  for (const Body& body : bodies) {
+    const std::vector<Triple> corners = corners_of(view.flight.data, body);
+    if (corners.empty())
+      shapes.add_disc(body.position, body.radius);
+    else
+      shapes.add_outline(corners);
+  }
+  std::move(shapes).add_to(view.panel);
+}
+
+/// The predictions, and the obstacles as they are tracked where no more is known of them.
+void add_tracks(View& view) {
+  const BodyFrame* frame = newest(view.flight.data.tracks, view.flight.at);
+  if (frame == nullptr) return;
+  const PlanRecord* plan = view.flight.plan();
   const double trust = plan == nullptr ? 0.0 : plan->acceleration_trust;
-  const Pen pen{.color = FigureColors::kTrack, .width = 0.35, .dash = {1.0, 0.7}};
+  Drawing discs = view.drawing("obstacle, as tracked", Kind::areas,
+                               {.colour = text_of(FigureColors::kObstacle),
+                                .width = 0.7,
+                                .edge = text_of(FigureColors::kTrack),
+                                .opacity = 0.5});
+  Drawing ahead = view.drawing("prediction, 2 s", Kind::line,
+                               {.colour = text_of(FigureColors::kTrack), .width = 1.1, .dashes = "(16,9)"});
   for (const Body& body : frame->bodies) {
     const planner::base::Track track{.position = vector(body.position),
                                      .velocity = vector(body.velocity),
                                      .acceleration = vector(body.acceleration),
                                      .radius = body.radius,
                                      .age = body.age};
-    std::vector<Spot> ahead;
     for (double s = 0.0; s <= kTrail; s += kAheadStep)
-      ahead.push_back(view.spot(triple(planner::geometry::predict_position(track, s, trust))));
-    canvas.line(ahead, pen);
-    if (flight.data.obstacles.empty()) {  // all that is known of them
-      const double radius = body.radius * view.scale.scale;
-      canvas.circle(view.spot(body.position), radius, FigureColors::kObstacle, 0.5, pen);
-    }
+      ahead.add(triple(planner::geometry::predict_position(track, s, trust)));
+    ahead.gap();
+    if (view.flight.data.obstacles.empty()) discs.add_disc(body.position, body.radius);
   }
+  std::move(discs).add_to(view.panel);
+  std::move(ahead).add_to(view.panel);
 }
 
-void draw_plan(Canvas& canvas, const View& view, const FigureFlight& flight) {
-  const PlanRecord* plan = flight.plan();
+/// The plan from where it is at the instant.
+void add_plan(View& view) {
+  const PlanRecord* plan = view.flight.plan();
   if (plan == nullptr) return;
-  std::vector<Spot> spots;
+  const double at = view.flight.at;
+  const bool blocked = is_blocked(*plan);
+  Drawing path = view.drawing(blocked ? "plan, blocked" : "plan", Kind::line,
+                              {.colour = text_of(blocked ? FigureColors::kBlocked : FigureColors::kPlan),
+                               .width = 2.4,
+                               .dashes = blocked ? "(16,6)" : "solid"});
+  bool begun = false;
   for (std::size_t i = 0; i < plan->path.size(); ++i) {
     const auto& [t, x, y, z] = plan->path[i];
-    if (t < flight.at) continue;
-    if (spots.empty() && i > 0 && t > plan->path[i - 1][0]) {  // from where the plan is at the instant
+    if (t < at) continue;
+    if (!begun && i > 0 && t > plan->path[i - 1][0]) {
       const auto& before = plan->path[i - 1];
-      const double share = (flight.at - before[0]) / (t - before[0]);
-      spots.push_back(view.spot({before[1] + share * (x - before[1]), before[2] + share * (y - before[2]),
-                                 before[3] + share * (z - before[3])}));
+      const double share = (at - before[0]) / (t - before[0]);
+      path.add({before[1] + share * (x - before[1]), before[2] + share * (y - before[2]),
+                before[3] + share * (z - before[3])});
     }
-    spots.push_back(view.spot({x, y, z}));
+    path.add({x, y, z});
+    begun = true;
   }
-  const bool blocked = plan->status != "reaches" && plan->status != "progresses";
-  Pen pen{.color = FigureColors::kPlan, .width = 0.9};
-  if (blocked) pen = {.color = FigureColors::kBlocked, .width = 0.9, .dash = {2.0, 1.0}};
-  canvas.line(spots, pen);
+  std::move(path).add_to(view.panel);
 }
 
 /// Dots along the flown way, a round number of seconds apart.
-void draw_clock(Canvas& canvas, const View& view, const std::vector<MotionSample>& motion) {
-  if (motion.size() < 2) return;
-  const Ticks ticks = ticks_of(motion.front().t, motion.back().t, 8.0);
-  for (const double t : ticks.values) {
-    const MotionSample* sample = newest(motion, t);
+void add_clock(View& view) {
+  const std::vector<MotionSample>& motion = view.flight.motion();
+  const double length = motion.back().t - motion.front().t;
+  if (!(length > 0.0)) return;
+  const double step = jink::tools::figures::round_step(length, 8.0);
+  Drawing dots =
+      view.drawing("", Kind::areas, {.colour = "#ffffff", .width = 1.0, .edge = text_of(FigureColors::kFlown)});
+  for (double n = std::ceil(motion.front().t / step); n * step <= motion.back().t; ++n) {
+    const MotionSample* sample = newest(motion, n * step);
     if (sample == nullptr) continue;
-    const Spot spot = view.spot(sample->position);
-    canvas.circle(spot, 0.55, "#ffffff", 1.0, {.color = FigureColors::kFlown, .width = 0.3});
-    if (view.from_above)
-      canvas.text({spot[0], spot[1] - 2.2}, ticks.text(t) + " s", {.size = 2.0, .align = Align::kCentre, .halo = true});
+    dots.add_disc(sample->position, view.metres(0.55));
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%g s", n * step);
+    if (view.from_above) view.note(sample->position, text.data(), 2.0);
   }
+  std::move(dots).add_to(view.panel);
 }
 
-void draw_ends(Canvas& canvas, const View& view, const FlightData& flight) {
+void add_ends(View& view) {
+  Drawing marks = view.drawing("", Kind::points, {.colour = "#1c2530", .width = 1.5, .mark = 12, .mark_size = 1.4});
   for (const char* key : {"start", "target"}) {
-    const auto found = flight.header.find(key);
-    if (found == flight.header.end() || !found->is_array() || found->size() != 3) continue;
+    const auto found = view.flight.data.header.find(key);
+    if (found == view.flight.data.header.end() || !found->is_array() || found->size() != 3) continue;
     Triple p{};
     for (std::size_t k = 0; k < 3; ++k) p[k] = (*found)[k].is_number() ? (*found)[k].get<double>() : 0.0;
-    const Spot s = view.spot(p);
-    const std::array<Spot, 4> diamond{{{s[0], s[1] - 1.1}, {s[0] + 1.1, s[1]}, {s[0], s[1] + 1.1}, {s[0] - 1.1, s[1]}}};
-    canvas.polygon(diamond, "#ffffff", 1.0, {.width = 0.4});
-    canvas.text({s[0], s[1] + 2.9}, key, {.size = 2.3, .align = Align::kCentre, .halo = true});
+    marks.add(p);
+    view.note(p, key, -3.0);
   }
+  std::move(marks).add_to(view.panel);
 }
 
-void draw_axes(Canvas& canvas, const View& view) {
-  const FigureScale& s = view.scale;
-  const Frame& f = view.frame;
-  const std::size_t a = s.across, d = view.down_axis();
-  const Pen grid{.color = "#dde3e9", .width = 0.15};
-  const TextStyle small{.size = 2.3, .align = Align::kCentre, .color = "#45525f"};
-  const Ticks across = ticks_of(s.low[a], s.high[a], f.width / 16.0);
-  for (const double v : across.values) {
-    const double x = f.x + (v - s.low[a]) * s.scale;
-    canvas.line(std::array<Spot, 2>{{{x, f.y}, {x, f.y + f.height}}}, grid);
-    if (!view.from_above) canvas.text({x, f.y + f.height + 2.2}, across.text(v), small);
-  }
-  const Ticks down = ticks_of(s.low[d], s.high[d], std::max(2.0, f.height / 9.0));
-  for (const double v : down.values) {
-    Triple p = s.low;
-    p[d] = v;
-    const double y = view.spot(p)[1];
-    canvas.line(std::array<Spot, 2>{{{f.x, y}, {f.x + f.width, y}}}, grid);
-    canvas.text({f.x - 1.2, y}, down.text(v), {.size = 2.3, .align = Align::kRight, .color = "#45525f"});
-  }
-  const TextStyle name{.size = 2.5, .align = Align::kCentre};
-  if (!view.from_above) canvas.text({f.x + 0.5 * f.width, f.y + f.height + 5.6}, std::string(kAxes[a]) + ", m", name);
-  canvas.text({f.x - 9.0, f.y + 0.5 * f.height}, std::string(kAxes[d]) + ", m",
-              {.size = 2.5, .align = Align::kCentre, .upright = true});
+void add_vehicle(View& view, const std::vector<MotionSample>& motion, std::uint64_t number, std::string_view colour) {
+  const MotionSample* sample = newest(motion, view.flight.at);
+  if (sample == nullptr) return;
+  Drawing disc = view.drawing("", Kind::areas, {.colour = text_of(colour), .width = 0.8, .edge = "#ffffff"});
+  disc.add_disc(sample->position, std::max(view.metres(0.6), vehicle_radius(view.flight.data, number).value_or(0.0)));
+  std::move(disc).add_to(view.panel);
 }
 
 }  // namespace
@@ -249,79 +309,36 @@ double view_height(const FigureScale& scale, bool from_above) {
   return (scale.high[k] - scale.low[k]) * scale.scale;
 }
 
-void draw_view(Canvas& canvas, const FigureFlight& flight, const FigureScale& scale, bool from_above,
-               const Frame& frame) {
-  const View view{scale, from_above, frame};
-  draw_axes(canvas, view);
-  canvas.clip(frame);
-  draw_trails(canvas, view, flight);
-  if (const BodyFrame* obstacles = newest(flight.data.obstacles, flight.at)) {
-    std::vector<Body> bodies = obstacles->bodies;  // from far to near
-    const std::size_t depth = from_above ? 2 : 1 - scale.across;
-    const double sign = !from_above && scale.across == 0 ? -1.0 : 1.0;
-    const auto farther = [&](const Body& a, const Body& b) {
-      return sign * a.position[depth] < sign * b.position[depth];
-    };
-    std::stable_sort(bodies.begin(), bodies.end(), farther);
-    for (const Body& body : bodies) draw_obstacle(canvas, view, flight.data, body);
-  }
-  draw_tracks(canvas, view, flight);
-  const double first = flight.data.first, last = flight.data.last;
+Panel view_panel(const FigureFlight& flight, const FigureScale& scale, bool from_above,
+                 const jink::tools::figures::Frame& frame) {
+  View view{flight, scale, from_above};
+  Panel& panel = view.panel;
+  const std::size_t a = scale.across, u = from_above ? 1 - a : 2;
+  panel.frame = frame;
+  panel.x_range = {scale.low[a], scale.high[a]};
+  panel.y_range = {scale.low[u], scale.high[u]};
+  // Where north runs across, east runs down: so it is seen from above and not from below.
+  if (from_above && a == 1) std::swap(panel.y_range->first, panel.y_range->second);
+  panel.y_label = kAxes[u];
+  panel.x_numbers = !from_above;
+  panel.y_step = jink::tools::figures::round_step(scale.high[u] - scale.low[u], std::max(2.0, frame.height / 9.0));
+  if (!from_above) panel.x_label = kAxes[a];
+  add_trails(view);
+  add_obstacles(view);
+  add_tracks(view);
+  Drawing others = view.drawing("other vehicles", Kind::line, {.colour = text_of(FigureColors::kOther), .width = 1.1});
+  for (const OtherVehicle& other : flight.data.others) others.add_way(other.truth);
+  std::move(others).add_to(panel);
+  Drawing flown = view.drawing("flown", Kind::line, {.colour = text_of(FigureColors::kFlown), .width = 1.7});
+  flown.add_way(flight.motion());
+  std::move(flown).add_to(panel);
+  add_plan(view);
+  add_clock(view);
+  add_ends(view);
   for (const OtherVehicle& other : flight.data.others)
-    draw_way(canvas, view, other.truth, first, last, {.color = FigureColors::kOther, .width = 0.4});
-  draw_way(canvas, view, flight.motion(), first, last, {.color = FigureColors::kFlown, .width = 0.6});
-  draw_plan(canvas, view, flight);
-  draw_clock(canvas, view, flight.motion());
-  draw_ends(canvas, view, flight.data);
-  const Pen rim{.color = "#ffffff", .width = 0.25};
-  const auto draw_vehicle = [&](const std::vector<MotionSample>& motion, std::uint64_t number, std::string_view color) {
-    const MotionSample* sample = newest(motion, flight.at);
-    if (sample == nullptr) return;
-    const double radius = std::max(0.6, vehicle_radius(flight.data, number).value_or(0.0) * scale.scale);
-    canvas.circle(view.spot(sample->position), radius, color, 1.0, rim);
-  };
-  for (const OtherVehicle& other : flight.data.others) draw_vehicle(other.truth, other.number, FigureColors::kOther);
-  draw_vehicle(flight.motion(), 0, FigureColors::kFlown);
-  canvas.unclip();
-  canvas.box(frame, {.color = "#56626f", .width = 0.25});
-}
-
-void draw_legend(Canvas& canvas, const FigureFlight& flight, const Spot& at, double width) {
-  struct Entry {
-    std::string text;
-    Pen pen;
-    bool dot = false;
-    bool present = true;
-  };
-  const FlightData& data = flight.data;
-  const PlanRecord* plan = flight.plan();
-  const bool blocked = plan != nullptr && plan->status != "reaches" && plan->status != "progresses";
-  const std::array<Entry, 6> entries{{
-      {"flown", {.color = FigureColors::kFlown, .width = 0.6}, false, !flight.motion().empty()},
-      {"other vehicles", {.color = FigureColors::kOther, .width = 0.4}, false, !data.others.empty()},
-      {blocked ? "plan, blocked" : "plan",
-       blocked ? Pen{.color = FigureColors::kBlocked, .width = 0.9, .dash = {2.0, 1.0}}
-               : Pen{.color = FigureColors::kPlan, .width = 0.9},
-       false, plan != nullptr},
-      {data.obstacles.empty() ? "obstacle, as tracked" : "obstacle, its way",
-       {.color = FigureColors::kObstacle, .width = 0.3},
-       true,
-       !data.obstacles.empty() || !data.tracks.empty()},
-      {"prediction, 2 s",
-       {.color = FigureColors::kTrack, .width = 0.35, .dash = {1.0, 0.7}},
-       false,
-       !data.tracks.empty()},
-      {"setpoint", {.color = kSetpoint, .width = 0.3}, false, !data.setpoints.empty()},
-  }};
-  double x = at[0];
-  for (const Entry& entry : entries) {
-    if (!entry.present || x > at[0] + width) continue;
-    canvas.line(std::array<Spot, 2>{{{x, at[1]}, {x + 7.0, at[1]}}}, entry.pen);
-    if (entry.dot) canvas.circle({x + 3.5, at[1]}, 1.1, entry.pen.color, 1.0, {.color = "#7a5510", .width = 0.2});
-    const TextStyle style{.size = 2.4};
-    canvas.text({x + 8.2, at[1]}, entry.text, style);
-    x += 8.2 + canvas.text_width(entry.text, style) + 5.0;
-  }
+    add_vehicle(view, other.truth, other.number, FigureColors::kOther);
+  add_vehicle(view, flight.motion(), 0, FigureColors::kFlown);
+  return std::move(view.panel);
 }
 
 }  // namespace jink::tools::report

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/html_report.hpp"
 
-#include <unistd.h>
-
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -49,21 +46,8 @@ std::string embeddable(const std::string& json) {
 }  // namespace
 
 void write_atomically(const std::filesystem::path& file, std::string_view bytes, const std::string& what) {
-  const std::filesystem::path part = base::unfinished_name(file, "." + std::to_string(::getpid()) + ".part");
-  const auto fail = [&](const std::string& text) {
-    std::error_code ignored;
-    if (part != file) std::filesystem::remove(part, ignored);
-    throw std::runtime_error(file.string() + ": " + text);
-  };
-  std::ofstream out(part, std::ios::binary);
-  if (!out) fail("cannot write " + what);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) fail(what + " could not be written to its end");
-  if (part == file) return;
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error) fail("cannot write " + what + ": " + error.message());
+  if (const std::error_code error = base::write_file(file, bytes))
+    throw std::runtime_error(file.string() + ": cannot write " + what + ": " + error.message());
 }
 
 std::vector<ReportResult> write_report(std::span<const ReportSource> sources, const std::filesystem::path& html) {

@@ -37,7 +37,7 @@ std::vector<ReportResult> write_report(std::span<const ReportSource> sources, co
 ReportResult write_report(const std::filesystem::path& log, const std::filesystem::path& html,
                           const nlohmann::json* summary = nullptr);
 
-/// Writes `bytes` as `file`, whole or not at all. Throws std::runtime_error "FILE: cannot write WHAT ...".
+/// Writes `bytes` as `file`, whole or not at all. Throws std::runtime_error "FILE: cannot write WHAT: WHY".
 void write_atomically(const std::filesystem::path& file, std::string_view bytes, const std::string& what);
 
 }  // namespace jink::tools::report

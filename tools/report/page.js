@@ -101,15 +101,15 @@ let currentRow = -2;
 function showEvents() {
   $("event-count").textContent = allEvents.length ? `(${allEvents.length})` : "– not in this log";
   eventRows = allEvents.map((item) => {
-    const [t, name, detail] = item.event;
-    const row = element("li", "", tone(name, detail));
+    const [t, name, detail, tone] = item.event;
+    const row = element("li", "", tone);
     const text = element("span", "");
     if (several) text.append(chip(item.flight), " ");
     text.append(name + (detail ? " " : ""), element("span", detail, "detail"));
     row.append(element("time", t.toFixed(2)), text);
     row.addEventListener("click", () => setTime(t));
     $("events").append(row);
-    const tick = element("i", "", tone(name, detail));
+    const tick = element("i", "", tone);
     tick.style.left = `${100 * (t - tFirst) / (tLast - tFirst || 1)}%`;
     tick.addEventListener("click", () => setTime(t));
     tick.addEventListener("mousemove", (e) => showTip(eventText(item), e));

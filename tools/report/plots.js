@@ -124,8 +124,7 @@ class Plots {
   drawEvents(ctx) {
     const colors = {good: "#007a58", warn: "#9a6400", bad: "#c03a00"};
     let free = kPlot.left;
-    for (const {flight, event: [at, name, detail]} of allEvents) {
-      const kind = tone(name, detail);
+    for (const {flight, event: [at, name, detail, kind]} of allEvents) {
       const x = this.x(at);
       ctx.fillStyle = kind ? colors[kind] + "80" : "#9aa6b255";
       ctx.fillRect(x - 0.5, kind ? kPlot.top - 6 : kPlot.top, 1, this.bottom - kPlot.top + (kind ? 6 : 0));

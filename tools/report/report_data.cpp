@@ -2,6 +2,7 @@
 #include "tools/report/report_data.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "sim/world/shapes.hpp"
 #include "tools/report/convex_hull.hpp"
+#include "tools/report/event_severity.hpp"
 
 namespace jink::tools::report {
 namespace {
@@ -296,7 +298,10 @@ Json report_data(const FlightData& flight, const Json* summary) {
   const std::vector<MotionSample>& vehicle = truth ? flight.truth : flight.states;
   const std::vector<ClearanceSample> exact = true_clearance(flight);
   Json events = Json::array();
-  for (const EventRecord& event : flight.events) events.push_back({seconds(event.t), event.name, event.detail});
+  constexpr std::array<const char*, 4> kTones{"", "good", "warn", "bad"};
+  for (const EventRecord& event : flight.events)
+    events.push_back({seconds(event.t), event.name, event.detail,
+                      kTones.at(static_cast<std::size_t>(event_severity(event.name, event.detail)))});
   Json data;
   data["header"] = flight.header;
   data["header"].erase("shapes");

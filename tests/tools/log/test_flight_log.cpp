@@ -28,12 +28,6 @@ std::vector<Json> records(const std::string& text) {
   return list;
 }
 
-std::string read(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 TEST(JsonWriter, NumbersReadBackToTheSameBits) {
   for (const double x : {0.0, -0.0, 1.0, -3.0, 0.1, 1.0 / 3.0, 1e22, -1e300, 123456789012345680.0,
                          18446744073709551615.0, 5e-324, std::numeric_limits<double>::max(), 2.2250738585072014e-308}) {
@@ -76,7 +70,7 @@ TEST(FlightLog, WritesEveryRecordInOrderAndAllBeforeItCloses) {
     log.on_event(0.1 * i, "name", std::to_string(i));
   }
   log.close();
-  const auto list = records(read(file));
+  const auto list = records(support::read(file));
   ASSERT_EQ(list.size(), 1001U);
   EXPECT_EQ(list[0]["format"], "jink-log/1");
   EXPECT_EQ(list[0]["version"], JINK_VERSION);
@@ -97,7 +91,7 @@ TEST(FlightLog, WritesWhatIsQueuedWhereNobodyClosesIt) {
     FlightLog log(file, {{"scenario", "s"}});
     for (int i = 0; i < 100; ++i) log.on_event(i, "e", "");
   }
-  EXPECT_EQ(records(read(file)).size(), 101U);
+  EXPECT_EQ(records(support::read(file)).size(), 101U);
 }
 
 /// A pipe as the log's file: as long as nobody reads it, it is a disk that does not take anything.

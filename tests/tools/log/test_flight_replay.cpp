@@ -23,15 +23,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string read(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 /// Header and first record.
 std::array<std::string, 2> first_lines(const std::filesystem::path& file) {
-  std::istringstream in(read(file));
+  std::istringstream in(support::read(file));
   std::array<std::string, 2> lines;
   for (std::string& line : lines) std::getline(in, line);
   return lines;

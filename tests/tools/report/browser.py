@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A browser without a screen, told what to do by the DevTools protocol over a pipe; and its screenshots as pixels."""
 import base64
+import io
 import json
 import os
 import select
 import shutil
-import struct
 import subprocess
 import tempfile
 import time
-import zlib
+
+import PIL.Image
 
 NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
@@ -24,72 +25,22 @@ def find():
 
 
 class Pixels:
-    """A PNG of 8 bits a channel, RGB or RGBA, not interlaced: pixel(x, y) -> (r, g, b)."""
+    """A picture as pixels (r, g, b). A box is (left, top, right, bottom)."""
 
     def __init__(self, data):
-        if data[:8] != b"\x89PNG\r\n\x1a\n":
-            raise ValueError("is no PNG")
-        at, packed, self.resolution = 8, b"", None
-        while at < len(data):
-            size, kind = struct.unpack(">I4s", data[at:at + 8])
-            body = data[at + 8:at + 8 + size]
-            if zlib.crc32(kind + body) != struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0]:
-                raise ValueError(f"chunk {kind} is damaged")
-            if kind == b"IHDR":
-                self.width, self.height, depth, colour, _, _, interlaced = struct.unpack(">IIBBBBB", body)
-                if depth != 8 or colour not in (2, 6) or interlaced:
-                    raise ValueError("is of a kind that is not read here")
-                self.channels = 3 if colour == 2 else 4
-            elif kind == b"pHYs":
-                self.resolution = struct.unpack(">IIB", body)
-            elif kind == b"IDAT":
-                packed += body
-            at += 12 + size
-        self.rows = self._unfilter(zlib.decompress(packed))
+        self.image = PIL.Image.open(io.BytesIO(data)).convert("RGB")
 
-    def _unfilter(self, raw):
-        """Undoes the PNG's prediction, row by row (PNG specification, section 9)."""
-        step, size = self.channels, self.width * self.channels
-        rows, above = [], bytearray(size)
-        for y in range(self.height):
-            kind = raw[y * (size + 1)]
-            row = bytearray(raw[y * (size + 1) + 1:(y + 1) * (size + 1)])
-            if kind == 1:
-                for i in range(step, size):
-                    row[i] = (row[i] + row[i - step]) & 255
-            elif kind == 2:
-                row = bytearray((a + b) & 255 for a, b in zip(row, above))
-            elif kind == 3:
-                for i in range(size):
-                    left = row[i - step] if i >= step else 0
-                    row[i] = (row[i] + (left + above[i]) // 2) & 255
-            elif kind == 4:
-                for i in range(size):
-                    left, corner = (row[i - step], above[i - step]) if i >= step else (0, 0)
-                    up = above[i]
-                    guess = left + up - corner
-                    near = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))
-                    row[i] = (row[i] + near[2]) & 255
-            rows.append(row)
-            above = row
-        return rows
-
-    def pixel(self, x, y):
-        at = x * self.channels
-        return tuple(self.rows[y][at:at + 3])
+    def within(self, box):
+        left, top, right, bottom = box or (0, 0, *self.image.size)
+        shown = self.image.crop((max(0, left), max(0, top), min(self.image.width, right), min(self.image.height, bottom)))
+        return zip(*[iter(shown.tobytes())] * 3)
 
     def count(self, colour, tolerance=12, box=None):
-        """Pixels of about that colour, in box (x0, y0, x1, y1) where given."""
-        x0, y0, x1, y1 = box or (0, 0, self.width, self.height)
-        found = 0
-        for y in range(max(0, y0), min(self.height, y1)):
-            for x in range(max(0, x0), min(self.width, x1)):
-                found += all(abs(a - b) <= tolerance for a, b in zip(self.pixel(x, y), colour))
-        return found
+        """Pixels of about that colour."""
+        return sum(all(abs(a - b) <= tolerance for a, b in zip(pixel, colour)) for pixel in self.within(box))
 
     def differing(self, other, box):
-        x0, y0, x1, y1 = box
-        return sum(self.pixel(x, y) != other.pixel(x, y) for y in range(y0, y1) for x in range(x0, x1))
+        return sum(a != b for a, b in zip(self.within(box), other.within(box)))
 
 
 class Page:

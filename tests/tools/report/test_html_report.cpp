@@ -29,12 +29,6 @@ constexpr char kHeader[] =
     "\n";
 constexpr char kDataBegin[] = "id=\"flight-data\">";
 
-std::string read(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 /// The data as the page's script gets them: the text up to the first "</script", parsed.
 Json data_of(const std::string& page) {
   const std::size_t begin = page.find(kDataBegin);
@@ -46,7 +40,7 @@ Json data_of(const std::string& page) {
 Json report_of(const std::string& log, const Json* summary = nullptr) {
   const support::Folder folder;
   write_report(folder.log(log), folder.html(), summary);
-  return data_of(read(folder.html()))["flights"][0];
+  return data_of(support::read(folder.html()))["flights"][0];
 }
 
 std::string error_of(const std::string& log) {
@@ -226,7 +220,7 @@ TEST(FlightReport, PutsSeveralFlightsIntoOnePage) {
   const auto results = write_report(sources, folder.html());
   ASSERT_EQ(results.size(), 2U);
   EXPECT_GT(results[0].lines, results[1].lines);
-  const Json flights = data_of(read(folder.html()))["flights"];
+  const Json flights = data_of(support::read(folder.html()))["flights"];
   ASSERT_EQ(flights.size(), 2U);
   EXPECT_EQ(flights[0]["file"], "first.jsonl");
   EXPECT_EQ(flights[0]["vehicle"]["from"], "truth");
@@ -270,7 +264,7 @@ TEST(FlightReport, CarriesTheSummaryAsGiven) {
 
 TEST(FlightReport, AddsAnEventForEachChangeOfMode) {
   const Json events = report_of(flight(false))["events"];
-  EXPECT_EQ(events[1], (Json{0.0, "mode", "offboard, armed"}));
+  EXPECT_EQ(events[1], (Json{0.0, "mode", "offboard, armed", ""}));
   EXPECT_EQ(events.size(), 3U);
 }
 
@@ -279,18 +273,18 @@ TEST(FlightReport, HoldsTextInItsPlace) {
   const support::Folder folder;
   const Json summary{{"outcome", "aborted"}, {"reason", evil}};
   write_report(folder.log(kHeader + event(1.0, evil, evil)), folder.html(), &summary);
-  const std::string page = read(folder.html());
+  const std::string page = support::read(folder.html());
   EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);
   const Json data = data_of(page)["flights"][0];  // and yet it reads back as it was
-  EXPECT_EQ(data["events"][0], (Json{1.0, evil, evil}));
+  EXPECT_EQ(data["events"][0], (Json{1.0, evil, evil, ""}));
   EXPECT_EQ(data["summary"]["reason"], evil);
 }
 
 TEST(FlightReport, IsSelfContained) {
   const support::Folder folder;
   write_report(folder.log(flight(true) + event(10.0, "note", "see http://example.org")), folder.html());
-  const std::string page = read(folder.html());
+  const std::string page = support::read(folder.html());
   for (const char* outside : {"http://", "https://", " src=", "@import", "url(", "fetch("}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
@@ -311,7 +305,7 @@ TEST(FlightReport, SkipsAndCountsALastLineThatIsCutOff) {
   const ReportResult result =
       write_report(folder.log(flight(false) + R"({"type":"state","t":10.02,"p":[1.0,2)"), folder.html());
   EXPECT_EQ(result.skipped, 1U);
-  const Json data = data_of(read(folder.html()))["flights"][0];
+  const Json data = data_of(support::read(folder.html()))["flights"][0];
   EXPECT_EQ(data["log"]["cut_off"], 1);
   EXPECT_EQ(data["log"]["lines"], result.lines);
   EXPECT_EQ(data["t"][1], 10.0);

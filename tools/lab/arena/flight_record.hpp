@@ -8,9 +8,14 @@
 
 #include "planner/base/types.hpp"
 #include "tools/lab/arena/settings.hpp"
-#include "tools/lab/arena/statistics.hpp"
+#include "tools/lab/statistics/samples.hpp"
 
 namespace jink::tools::lab::arena {
+
+using jink::tools::lab::statistics::DurationHistogram;
+using jink::tools::lab::statistics::Proportion;
+using jink::tools::lab::statistics::quantile;
+using jink::tools::lab::statistics::wilson;
 
 /// Wall-clock figures: another run, machine or thread count gives others.
 struct Measured {

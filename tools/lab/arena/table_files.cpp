@@ -10,6 +10,7 @@
 
 #include "tools/lab/arena/flight_runner.hpp"
 #include "tools/lab/arena/tables.hpp"
+#include "tools/lab/presentation/table.hpp"
 
 namespace jink::tools::lab::arena {
 namespace {
@@ -18,10 +19,7 @@ using Json = nlohmann::ordered_json;
 
 /// One cell of a CSV line; what needs quotes has them.
 std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) c == '"' ? result += "\"\"" : result += c;
-  return result + "\"";
+  return presentation::csv_field(text);
 }
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tools/lab/arena/results.hpp"
-#include "tools/lab/arena/statistics.hpp"
 
 namespace jink::tools::lab::arena {
 

@@ -231,9 +231,9 @@ std::vector<std::string> cells_of(const Variant& variant, const Results& own, co
   if (length_gaps.empty()) length_gaps = score_gaps = {std::nan("")};
   return {variant.name,
           fmt::format("{}", solved),
-          fmt::format("{:.3f}", mean(length_gaps)),
+          fmt::format("{:.3f}", jink::tools::lab::statistics::mean(length_gaps)),
           fmt::format("{:.3f}", quantile(length_gaps, 0.9)),
-          fmt::format("{:.3f}", mean(score_gaps)),
+          fmt::format("{:.3f}", jink::tools::lab::statistics::mean(score_gaps)),
           fmt::format("{}", better),
           fmt::format("{}", worse),
           fmt::format("{:.2f}", median(own.one_ms)),
@@ -354,12 +354,15 @@ void print_paper(const Options& options, planner::base::WorkerPool& pool) {
       std::vector<double> behind;
       for (std::size_t i = 0; i < s.absolute.size(); ++i)
         behind.push_back(1e6 * (scores.back().absolute[i] - s.absolute[i]));
-      table.row({name, kPaperVariants[v].name, fmt::format("{:.5f}", mean(s.relative)),
-                 fmt::format("{:.5f}", deviation(s.relative)), fmt::format("{:.7f}", mean(s.absolute)),
-                 fmt::format("{:.2f}", mean(behind)), fmt::format("{:.2f}", quantile(behind, 0.9)),
-                 fmt::format("{:.1f}", mean(s.size)), fmt::format("{:.6f}", mean(s.slr)),
-                 fmt::format("{:.6f}", deviation(s.slr)), fmt::format("{:.6f}", quantile(s.slr, 1.0)),
-                 fmt::format("{}", s.free)});
+      table.row({name, kPaperVariants[v].name, fmt::format("{:.5f}", jink::tools::lab::statistics::mean(s.relative)),
+                 fmt::format("{:.5f}", jink::tools::lab::statistics::standard_deviation(s.relative)),
+                 fmt::format("{:.7f}", jink::tools::lab::statistics::mean(s.absolute)),
+                 fmt::format("{:.2f}", jink::tools::lab::statistics::mean(behind)),
+                 fmt::format("{:.2f}", quantile(behind, 0.9)),
+                 fmt::format("{:.1f}", jink::tools::lab::statistics::mean(s.size)),
+                 fmt::format("{:.6f}", jink::tools::lab::statistics::mean(s.slr)),
+                 fmt::format("{:.6f}", jink::tools::lab::statistics::standard_deviation(s.slr)),
+                 fmt::format("{:.6f}", quantile(s.slr, 1.0)), fmt::format("{}", s.free)});
     }
   }
   table.print();

@@ -5,32 +5,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 
 namespace jink::tools::lab::bench {
 
 double quantile(std::vector<double> samples, double q) {
-  assert(!samples.empty());
   std::sort(samples.begin(), samples.end());
-  const double at = q * static_cast<double>(samples.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, samples.size() - 1);
-  return samples[below] + (at - static_cast<double>(below)) * (samples[above] - samples[below]);
-}
-
-double mean(const std::vector<double>& samples) {
-  assert(!samples.empty());
-  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
-}
-
-double deviation(const std::vector<double>& samples) {
-  if (samples.size() < 2) return 0.0;
-  const double centre = mean(samples);
-  double sum = 0.0;
-  for (const double sample : samples) sum += (sample - centre) * (sample - centre);
-  return std::sqrt(sum / static_cast<double>(samples.size() - 1));
+  return jink::tools::lab::statistics::quantile(samples, q);
 }
 
 void Table::print() const {

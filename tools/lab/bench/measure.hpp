@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/lab/statistics/samples.hpp"
+
 namespace jink::tools::lab::bench {
 
 /// How much is measured. `--quick` keeps every table and takes few samples.
@@ -26,15 +28,13 @@ double milliseconds(const Work& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
 }
 
-/// The q-quantile, linear between order statistics. Precondition: not empty.
+using jink::tools::lab::statistics::mean;
+using jink::tools::lab::statistics::standard_deviation;
+/// statistics::quantile() of values in any order.
 double quantile(std::vector<double> samples, double q);
 inline double median(const std::vector<double>& samples) {
   return quantile(samples, 0.5);
 }
-/// Precondition: not empty.
-double mean(const std::vector<double>& samples);
-/// Standard deviation of the sample (n - 1); 0 for fewer than two.
-double deviation(const std::vector<double>& samples);
 
 /// Columns as wide as their widest cell; the first to the left, the others to the right. Units stand in the heads.
 class Table {

@@ -7,18 +7,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tools/lab/algorithms/comparators.hpp"
+#include "tools/lab/algorithms/registry.hpp"
 #include "tools/lab/bench/measure.hpp"
 #include "tools/lab/bench/missions.hpp"
-#include "tools/lab/bench/pagmo_nsga2.hpp"
 
 namespace jink::tools::lab::bench {
 namespace {
 
 constexpr const char* kMission = "table2-5";
-
-int step_evaluations(const planner::base::OptimizerSettings& settings) {
-  return settings.population * settings.iterations;
-}
 
 /// One way to plan the mission, and what came of it.
 struct Contender {
@@ -53,8 +50,9 @@ void print(const std::vector<Contender>& contenders, std::size_t yardstick) {
     table.row({c.name, fmt::format("{}", c.evaluations), fmt::format("{:.2f}", median(c.ms)),
                fmt::format("{:.2f}", quantile(c.ms, 0.1)), fmt::format("{:.2f}", quantile(c.ms, 0.9)),
                fmt::format("{:.1f}", median(other) / median(c.ms)),
-               fmt::format("{:.1f}", quantile(other, 0.1) / quantile(c.ms, 0.1)), fmt::format("{:.6f}", mean(c.slr)),
-               fmt::format("{:.6f}", deviation(c.slr))});
+               fmt::format("{:.1f}", quantile(other, 0.1) / quantile(c.ms, 0.1)),
+               fmt::format("{:.6f}", jink::tools::lab::statistics::mean(c.slr)),
+               fmt::format("{:.6f}", jink::tools::lab::statistics::standard_deviation(c.slr))});
   }
   table.print();
 }
@@ -79,18 +77,12 @@ BENCHMARK(mission_pmomvo)
 void mission_pagmo(benchmark::State& state) {
   const Mission mission(kMission);
   planner::base::WorkerPool pool(1);
-  PagmoNsga2 optimizer(step_evaluations({}), static_cast<PagmoNsga2::Evaluation>(state.range(0)));
+  const auto optimizer = algorithms::make_nsga2({}, 2, 2);
   std::uint64_t seed = 0;
   for ([[maybe_unused]] auto _ : state)
-    benchmark::DoNotOptimize(planner::paper::plan_paper(mission.request(++seed), optimizer, pool));
+    benchmark::DoNotOptimize(planner::paper::plan_paper(mission.request(++seed), *optimizer, pool));
 }
-BENCHMARK(mission_pagmo)
-    ->Name("mission, pagmo2 NSGA-II")
-    ->ArgName("batch")
-    ->Arg(0)
-    ->Arg(1)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(mission_pagmo)->Name("mission, pagmo2 NSGA-II")->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
@@ -102,14 +94,13 @@ void bench_paper(const Options& options) {
       "paper mission: time",
       fmt::format(
           "{}, {} waypoints, n_pop {}, n_iter {}, m {}, l {}; the whole mission, {} seeds, rounds of all in "
-          "turn for each: {}.\npagmo2 {}: NSGA-II, population 52, its default operators, one thread; batch: "
-          "a generation's children in one call. Ratios: of medians, and of p10, which a busy machine disturbs less.",
+          "turn for each: {}.\npagmo2 {}: NSGA-II as `jink study` has it, one thread. Ratios: of medians, and of p10, "
+          "which a busy machine disturbs less.",
           kMission, request.settings.waypoints, s.population, s.iterations, s.slaves, s.sharing, options.seeds,
-          options.rounds, pagmo_version()));
+          options.rounds, algorithms::pagmo_version()));
   planner::base::WorkerPool one(1);
   planner::base::WorkerPool all(options.cores);
-  PagmoNsga2 pagmo(step_evaluations(s));
-  PagmoNsga2 pagmo_batch(step_evaluations(s), PagmoNsga2::Evaluation::kBatch);
+  const auto nsga2 = algorithms::make_nsga2(s, 2, 2);
   std::vector<Contender> contenders;
   const auto add = [&](std::string name,
                        std::function<planner::verify::Plan(const planner::paper::PaperRequest&)> plan) {
@@ -117,8 +108,7 @@ void bench_paper(const Options& options) {
   };
   add(fmt::format("PMOMVO, {} threads", options.cores), [&](const auto& r) { return plan_paper(r, all); });
   add("PMOMVO, 1 thread", [&](const auto& r) { return plan_paper(r, one); });
-  add("pagmo2 NSGA-II", [&](const auto& r) { return plan_paper(r, pagmo, one); });
-  add("pagmo2 NSGA-II, batch", [&](const auto& r) { return plan_paper(r, pagmo_batch, one); });
+  add("pagmo2 NSGA-II", [&](const auto& r) { return plan_paper(r, *nsga2, one); });
   race(contenders, mission, options);
   if (contenders[0].slr != contenders[1].slr) throw std::logic_error("PMOMVO's paths depend on the number of threads");
   print(contenders, 2);

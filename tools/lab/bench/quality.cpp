@@ -4,10 +4,10 @@
 
 #include "planner/optimizer/indicators.hpp"
 #include "planner/optimizer/pmomvo.hpp"
+#include "tools/lab/algorithms/comparators.hpp"
 #include "tools/lab/bench/fronts.hpp"
 #include "tools/lab/bench/measure.hpp"
 #include "tools/lab/bench/missions.hpp"
-#include "tools/lab/bench/pagmo_nsga2.hpp"
 
 namespace jink::tools::lab::bench {
 namespace {
@@ -43,13 +43,13 @@ struct Duel {
 void fight(const Mission& mission, std::uint64_t seed, planner::base::WorkerPool& pool, Duel& duel) {
   const planner::base::OptimizerSettings settings = mission.request(seed).optimizer;
   planner::optimizer::Pmomvo pmomvo(settings, 2, 2);
-  PagmoNsga2 pagmo(settings.population * settings.iterations);
+  const auto pagmo = algorithms::make_nsga2(settings, 2, 2);
   const planner::base::Budget budget{settings.iterations};
   std::uint64_t stream = 0;
   for (const planner::paper::WaypointProblem& step : record_steps(mission, seed, pool)) {
     ++stream;
     const auto ours = points_of(pmomvo.run(step, {}, seed, stream, budget, pool));
-    const auto theirs = points_of(pagmo.run(step, {}, seed, stream, budget, pool));
+    const auto theirs = points_of(pagmo->run(step, {}, seed, stream, budget, pool));
     std::vector<planner::optimizer::Point2> both = ours;
     both.insert(both.end(), theirs.begin(), theirs.end());
     const planner::optimizer::FrontBounds bounds = planner::optimizer::front_bounds(both);
@@ -77,10 +77,13 @@ void print_hypervolume(const Options& options, planner::base::WorkerPool& pool) 
     for (int seed = 1; seed <= options.seeds; ++seed) fight(mission, static_cast<std::uint64_t>(seed), pool, duel);
     const auto row = [&](const char* optimizer, const std::vector<double>& relative, int relative_better,
                          const std::vector<double>& absolute, int absolute_better, const std::vector<double>& sizes) {
-      table.row({name, optimizer, fmt::format("{:.5f}", mean(relative)), fmt::format("{:.5f}", deviation(relative)),
-                 fmt::format("{}", relative_better), fmt::format("{:.7f}", mean(absolute)),
-                 fmt::format("{:.7f}", deviation(absolute)), fmt::format("{}", absolute_better),
-                 fmt::format("{}", sizes.size()), fmt::format("{:.1f}", mean(sizes))});
+      table.row({name, optimizer, fmt::format("{:.5f}", jink::tools::lab::statistics::mean(relative)),
+                 fmt::format("{:.5f}", jink::tools::lab::statistics::standard_deviation(relative)),
+                 fmt::format("{}", relative_better),
+                 fmt::format("{:.7f}", jink::tools::lab::statistics::mean(absolute)),
+                 fmt::format("{:.7f}", jink::tools::lab::statistics::standard_deviation(absolute)),
+                 fmt::format("{}", absolute_better), fmt::format("{}", sizes.size()),
+                 fmt::format("{:.1f}", jink::tools::lab::statistics::mean(sizes))});
     };
     row("PMOMVO", duel.relative.pmomvo, duel.relative.pmomvo_better, duel.absolute.pmomvo, duel.absolute.pmomvo_better,
         duel.pmomvo_size);
@@ -113,7 +116,7 @@ void print_slr(const Options& options, planner::base::WorkerPool& pool) {
     const std::string name = fmt::format("table2-{}", number);
     const Mission mission(name);
     const planner::base::OptimizerSettings settings = mission.request(1).optimizer;
-    PagmoNsga2 pagmo(settings.population * settings.iterations);
+    const auto pagmo = algorithms::make_nsga2(settings, 2, 2);
     Outcomes ours;
     Outcomes theirs;
     Outcomes horizon;
@@ -121,14 +124,14 @@ void print_slr(const Options& options, planner::base::WorkerPool& pool) {
     for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(options.seeds); ++seed) {
       const planner::paper::PaperRequest request = mission.request(seed);
       ours.add(mission, planner::paper::plan_paper(request, pool));
-      theirs.add(mission, planner::paper::plan_paper(request, pagmo, pool));
+      theirs.add(mission, planner::paper::plan_paper(request, *pagmo, pool));
       horizon.add(mission,
                   planner::horizon::plan_open_loop(flight, {}, mission.open_loop(), seed, {flight.generations}, pool));
     }
     std::vector<std::string> cells{name};
     for (const Outcomes& outcomes : {ours, theirs, horizon}) {
-      cells.push_back(fmt::format("{:.6f}", mean(outcomes.slr)));
-      cells.push_back(fmt::format("{:.6f}", deviation(outcomes.slr)));
+      cells.push_back(fmt::format("{:.6f}", jink::tools::lab::statistics::mean(outcomes.slr)));
+      cells.push_back(fmt::format("{:.6f}", jink::tools::lab::statistics::standard_deviation(outcomes.slr)));
       cells.push_back(fmt::format("{:.6f}", quantile(outcomes.slr, 1.0)));
       cells.push_back(fmt::format("{}", outcomes.free));
     }

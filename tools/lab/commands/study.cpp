@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "tools/cli/command_line.hpp"
+#include "tools/figures/figure.hpp"
 #include "tools/lab/campaign/options.hpp"
-#include "tools/lab/presentation/figure.hpp"
 #include "tools/lab/study/campaign.hpp"
 #include "tools/lab/study/output_files.hpp"
 
@@ -88,7 +88,7 @@ int run_study(const StudyOptions& options, const cli::Printer& printer) {
   const config::Settings planner = options.common.settings();
   const study::StudySettings settings = settings_of(options, planner);
   study::Results results = begin(settings, options, printer);
-  study::require_gnuplot();
+  jink::tools::figures::require_gnuplot();
   const study::Setting setting(settings, planner);
   campaign::make_folder(options.out);
   cli::require_json(options.common.json);
@@ -121,7 +121,7 @@ int run_merge(const StudyOptions& options, const cli::Printer& printer) {
   std::vector<std::string> missing;
   const config::Settings planner = config::recorded_settings(study::results_path(options.merge.front()).string(),
                                                              results.settings.parameters, {}, missing);
-  study::require_gnuplot();
+  jink::tools::figures::require_gnuplot();
   const study::Setting setting(results.settings, planner);
   campaign::make_folder(options.out);
   conclude(results, setting, options, printer);
@@ -140,7 +140,7 @@ int run(const StudyOptions& options) {
     return options.merge.empty() ? run_study(options, printer) : run_merge(options, printer);
   } catch (const campaign::ResultsError& error) {
     throw cli::UsageError(error.what());
-  } catch (const presentation::FigureError& error) {
+  } catch (const jink::tools::figures::FigureError& error) {
     throw cli::UsageError(error.what());
   }
 }

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
-
 #include "tools/lab/presentation/embedded.hpp"
 #include "tools/lab/presentation/markup.hpp"
 
@@ -14,37 +10,6 @@ namespace jink::tools::lab::presentation {
 namespace {
 
 constexpr std::size_t kManyColumns = 7;  // more are set closer
-
-/// The SVG's element, without what stands before it.
-std::string read_svg(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("report: cannot read the figure {}", file.string()));
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const std::size_t begin = text.find("<svg");
-  const std::size_t end = text.rfind("</svg>");
-  if (begin == std::string::npos || end == std::string::npos || end < begin)
-    throw std::runtime_error(fmt::format("report: {} is no SVG", file.string()));
-  return text.substr(begin, end + 6 - begin);
-}
-
-/// Puts a prefix before every id and every reference to one: ids are the page's, and each figure has the same ones.
-std::string with_own_ids(const std::string& svg, const std::string& prefix) {
-  std::string out;
-  std::size_t at = 0;
-  while (at < svg.size()) {
-    bool found = false;
-    for (const std::string_view mark : {" id='", " id=\"", "href='#", "href=\"#", "url(#"}) {
-      if (svg.compare(at, mark.size(), mark) != 0) continue;
-      out += mark;
-      out += prefix;
-      at += mark.size();
-      found = true;
-      break;
-    }
-    if (!found) out += svg[at++];
-  }
-  return out;
-}
 
 std::string figure_name(const std::string& id) {
   return numbered_name(id, "figure", "Figure");
@@ -94,14 +59,16 @@ std::string part_html(const std::string& paragraph) {
 
 std::string part_html(const FigureFile& figure) {
   return fmt::format("<figure id=\"{0}\">\n{1}\n<figcaption><strong>{2}.</strong> {3}</figcaption>\n</figure>\n",
-                     html_escaped(figure.id), with_own_ids(read_svg(figure.svg), html_escaped(figure.id) + "-"),
-                     html_escaped(figure_name(figure.id)), html_prose(figure.caption));
+                     html_escaped(figure.id), figure.svg, html_escaped(figure_name(figure.id)),
+                     html_prose(figure.caption));
 }
 
 std::string part_html(const List& list) {
   std::string html = "<ul>\n";
   for (const std::string& point : list.points) html += "<li>" + html_prose(point) + "</li>\n";
-  return html + "</ul>\n";
+  html += "</ul>\n";
+  if (list.folded.empty()) return html;
+  return "<details><summary>" + html_prose(list.folded) + "</summary>\n" + html + "</details>\n";
 }
 
 std::string part_html(const Facts& facts) {

@@ -2,7 +2,6 @@
 // The study as one page: prose, tables and figures in one HTML file that needs no other file, no network and no script.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,12 +15,13 @@ namespace jink::tools::lab::presentation {
 struct FigureFile {
   std::string id;       ///< "figure13": shown as "Figure 13"; another id is shown as it is
   std::string caption;  ///< sentences
-  std::filesystem::path svg;
+  std::string svg;      ///< the element, figures::svg_element(); its ids are no other figure's
 };
 
 /// Points, one line or sentence each.
 struct List {
   std::vector<std::string> points;
+  std::string folded{};  ///< not empty: only this is shown until it is clicked
 };
 
 /// Facts with their names, set as a narrow table: what machine, what settings.
@@ -46,8 +46,7 @@ struct Report {
   std::vector<Section> sections;
 };
 
-/// The page, in UTF-8. The figures' SVG is put into it, with ids of its own. Throws std::runtime_error naming the file
-/// where a figure cannot be read or is no SVG, and as to_csv() does for a table.
+/// The page, in UTF-8. Throws as to_csv() does for a table.
 [[nodiscard]] std::string report_html(const Report& report);
 
 }  // namespace jink::tools::lab::presentation

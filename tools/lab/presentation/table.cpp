@@ -28,13 +28,6 @@ bool any_in_column(const Table& table, std::size_t column, Predicate predicate) 
   return std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return predicate(row[column]); });
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string csv_cell(const Cell& cell) {
   if (cell.value) return fmt::format("{}", *cell.value);
   return cell.text == kNothing ? std::string() : csv_field(cell.text);
@@ -73,6 +66,13 @@ bool has_paper(const Table& table) {
 }
 
 }  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
 
 Cell label(std::string text) {
   return {std::move(text), std::nullopt, {}, false};

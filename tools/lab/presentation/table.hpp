@@ -44,6 +44,9 @@ struct Table {
 /// How many of a row's labels are those of the row above and need not be shown again; never all of them.
 [[nodiscard]] std::size_t repeated_labels(const Table& table, std::size_t row);
 
+/// A field of RFC 4180, in quotes where it needs them.
+[[nodiscard]] std::string csv_field(const std::string& text);
+
 /// RFC 4180 with "\n" as the line's end. A number is written in full (the shortest text that reads back as the same
 /// double; "nan", "inf"), a label as its text, a place without a number as nothing. Behind each column of which the
 /// paper prints a number comes "HEADING (paper)", and behind each with a mark "HEADING (marked)" with yes or no. Notes

@@ -113,7 +113,7 @@ Claim against_momvo(const Selection& s, std::string text, const Value& value, co
 
 Claim fastest_claim(const Selection& s) {
   Claim claim{"PMOMVO-6 is the fastest in every scenario (Tables 7 and 9)", "runs are missing", Outcome::kUnknown};
-  const std::optional<presentation::Scores> found = scores(s, Criterion::kTime, false);
+  const std::optional<statistics::Scores> found = scores(s, Criterion::kTime, false);
   if (!found) return claim;
   const std::vector<std::string> own = own_algorithms();
   std::vector<std::string> winners;
@@ -138,7 +138,7 @@ Claim optimum_claim(const Selection& s) {
     std::vector<double> means;
     for (const std::string& algorithm : own_algorithms()) {
       const std::vector<double> slr = values(reached(s.paths(algorithm, world)), key::kSlr);
-      if (!slr.empty()) means.push_back(presentation::mean(slr));
+      if (!slr.empty()) means.push_back(statistics::mean(slr));
     }
     if (means.empty()) continue;
     const auto [least, most] = std::minmax_element(means.begin(), means.end());
@@ -158,11 +158,11 @@ Claim optimum_claim(const Selection& s) {
 Claim difference_claim(const Selection& s) {
   Claim claim{"The more slaves, the shorter the paths, significantly (Tables 8, 10)", "runs are missing",
               Outcome::kUnknown};
-  const std::optional<presentation::Scores> found = scores(s, Criterion::kLength, false);
+  const std::optional<statistics::Scores> found = scores(s, Criterion::kLength, false);
   if (!found) return claim;
-  const presentation::Scores ranks = presentation::friedman_ranks(*found);
-  const std::vector<double> sums = presentation::rank_sums(ranks);
-  const presentation::Friedman f = presentation::friedman(ranks);
+  const statistics::Scores ranks = statistics::friedman_ranks(*found);
+  const std::vector<double> sums = statistics::rank_sums(ranks);
+  const statistics::Friedman f = statistics::friedman(ranks);
   claim.finding = fmt::format(
       "F = {:.3f}, critical {:.4f}, p = {:.4f}; rank sums from MOMVO to PMOMVO-12: {}; means are ranked in steps of "
       "{:g}",
@@ -192,7 +192,7 @@ Claim sizes_claim(const Selection& s) {
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (const std::string& algorithm : own_algorithms()) {
     for (const double m :
-         size_means(s, algorithm, [](const Records& all) { return presentation::mean(values(all, key::kLength)); })) {
+         size_means(s, algorithm, [](const Records& all) { return statistics::mean(values(all, key::kLength)); })) {
       least = std::min(least, m);
       greatest = std::max(greatest, m);
     }
@@ -208,7 +208,7 @@ Claim effort_claim(const Selection& s) {
   Claim claim{"More iterations and universes cost less with slaves (Table 14)", "runs are missing", Outcome::kUnknown};
   const auto growth = [&](const std::string& algorithm) {
     const std::vector<double> times =
-        size_means(s, algorithm, [](const Records& all) { return presentation::mean(measured(all, key::kPlanning)); });
+        size_means(s, algorithm, [](const Records& all) { return statistics::mean(measured(all, key::kPlanning)); });
     return times.size() < 2 ? 0.0 : times.back() / times.front();
   };
   const double alone = growth("momvo");

@@ -20,8 +20,8 @@ std::vector<double> planning_ms(const Records& records) {
 }
 
 /// A series that looks the same in every figure.
-presentation::Series series_of(std::string_view algorithm, presentation::Kind kind) {
-  presentation::Series series;
+figures::Series series_of(std::string_view algorithm, figures::Kind kind) {
+  figures::Series series;
   series.label = label_of(algorithm);
   series.kind = kind;
   series.style = place_of(algorithm);
@@ -29,16 +29,16 @@ presentation::Series series_of(std::string_view algorithm, presentation::Kind ki
 }
 
 /// Adds a mean with its interval; nothing where there is no value.
-void add_mean(presentation::Series& series, double x, const std::vector<double>& sample) {
+void add_mean(figures::Series& series, double x, const std::vector<double>& sample) {
   if (sample.empty()) return;
-  const presentation::Summary s = presentation::summary(sample);
+  const statistics::Summary s = statistics::summary(sample);
   series.x.push_back(x);
   series.y.push_back(s.mean);
   series.low.push_back(sample.size() > 1 ? s.low : s.mean);
   series.high.push_back(sample.size() > 1 ? s.high : s.mean);
 }
 
-void add_if_any(presentation::Panel& panel, presentation::Series series) {
+void add_if_any(figures::Panel& panel, figures::Series series) {
   if (!series.x.empty()) panel.series.push_back(std::move(series));
 }
 
@@ -60,7 +60,7 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
       "none covers another. MOMVO does not share and is shown at l = 0.",
       step.station + 1, setting.planner.paper.waypoints, world_text(blocked), kApart);
   for (const int l : sharing_rates()) {
-    presentation::Panel panel;
+    figures::Panel panel;
     panel.title = fmt::format("l = {}", l);
     panel.x_label = "Length f1 (normalised)";
     panel.y_label = "Steering f2 (normalised)";
@@ -70,16 +70,16 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
       const Records records =
           l == 0 || has_slaves(algorithm) ? selection.fronts(algorithm, hardest_world(blocked), l) : Records();
       if (records.empty()) continue;
-      presentation::Series series = series_of(algorithm, presentation::Kind::points);
+      figures::Series series = series_of(algorithm, figures::Kind::points);
       series.x = records.front()->series.at(key::kF1);
       for (const double f2 : records.front()->series.at(key::kF2))
         series.y.push_back(f2 + kApart * place_of(algorithm));
       panel.series.push_back(std::move(series));
     }
     if (panel.series.empty()) continue;
-    presentation::Series best;
+    figures::Series best;
     best.label = "reference";
-    best.kind = presentation::Kind::line;
+    best.kind = figures::Kind::line;
     best.style = static_cast<int>(algorithms::algorithms().size());
     for (const planner::optimizer::Point2& p : step.reference.points) {
       const planner::optimizer::Point2 scaled_point = planner::optimizer::normalise(p, step.reference.bounds);
@@ -102,18 +102,18 @@ std::vector<CaptionedFigure> time_figures(const Selection& selection) {
   CaptionedFigure slaves{{}, "The same over the number of slaves; 1 is MOMVO. " + timing_note(selection)};
   slaves.figure.id = "figure14";
   slaves.figure.title = "Planning time over the number of slaves";
-  presentation::Panel over_rates, over_slaves;
+  figures::Panel over_rates, over_slaves;
   over_rates.x_label = "Sharing rate l";
   over_slaves.x_label = "Slaves m";
   over_rates.y_label = over_slaves.y_label = kTimeLabel;
   const std::string world = hardest_world(false);
   for (const std::string& algorithm : own_algorithms()) {
-    presentation::Series series = series_of(algorithm, presentation::Kind::line_points);
+    figures::Series series = series_of(algorithm, figures::Kind::line_points);
     for (const int l : sharing_rates()) add_mean(series, l, planning_ms(selection.paths(algorithm, world, l)));
     add_if_any(over_rates, std::move(series));
   }
   for (const int l : sharing_rates()) {
-    presentation::Series series;
+    figures::Series series;
     series.label = fmt::format("l = {}", l);
     int slaves_of = 1;
     for (const std::string& algorithm : own_algorithms()) {
@@ -135,12 +135,12 @@ CaptionedFigure comparison_figure(const Selection& selection) {
           timing_note(selection)};
   result.figure.id = "figure15";
   result.figure.title = "Planning time of all algorithms";
-  presentation::Panel panel;
+  figures::Panel panel;
   panel.y_label = kTimeLabel;
   panel.log_y = true;
   panel.legend = false;
-  presentation::Series bars;
-  bars.kind = presentation::Kind::bars;
+  figures::Series bars;
+  bars.kind = figures::Kind::bars;
   for (const algorithms::Algorithm& algorithm : algorithms::algorithms()) {
     const std::vector<double> sample = planning_ms(selection.paths(algorithm.name, hardest_world(false)));
     if (sample.empty()) continue;
@@ -156,22 +156,21 @@ CaptionedFigure comparison_figure(const Selection& selection) {
 namespace {
 
 /// One row of panels: over population for each number of iterations, or the other way about.
-void add_size_panels(presentation::Figure& figure, const Selection& selection, bool over_population,
-                     bool blocked_length) {
+void add_size_panels(figures::Figure& figure, const Selection& selection, bool over_population, bool blocked_length) {
   const std::vector<int> inner =
       over_population ? population_factors(selection.settings()) : iteration_factors(selection.settings());
   const std::vector<int> outer =
       over_population ? iteration_factors(selection.settings()) : population_factors(selection.settings());
   const PaperSizes& sizes = selection.sizes();
   for (const int o : outer) {
-    presentation::Panel panel;
+    figures::Panel panel;
     panel.x_label = over_population ? "Population" : "Iterations";
     panel.y_label = blocked_length ? "Path length, blocked (m)" : kTimeLabel;
     panel.title = over_population ? fmt::format("{} iterations", o * sizes.iterations)
                                   : fmt::format("population {}", o * sizes.population);
     panel.log_y = !blocked_length;
     for (const std::string& algorithm : own_algorithms()) {
-      presentation::Series series = series_of(algorithm, presentation::Kind::line_points);
+      figures::Series series = series_of(algorithm, figures::Kind::line_points);
       for (const int i : inner) {
         const int population = (over_population ? i : o) * sizes.population;
         const int iterations = (over_population ? o : i) * sizes.iterations;
@@ -180,7 +179,7 @@ void add_size_panels(presentation::Figure& figure, const Selection& selection, b
             blocked_length ? values(reached(records), key::kLength) : planning_ms(records);
         if (sample.empty()) continue;
         series.x.push_back(over_population ? population : iterations);
-        series.y.push_back(presentation::mean(sample));
+        series.y.push_back(statistics::mean(sample));
       }
       if (panel.ticks.size() < series.x.size()) panel.ticks = series.x;
       add_if_any(panel, std::move(series));
@@ -221,7 +220,7 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
       "over the median wall time, at {} steps of {}; lower is better. All have fronts of at most {} members, so that "
       "something always lacks. {}",
       best, steps.size(), world_text(blocked), setting.planner.optimizer.archive, timing_note(selection));
-  presentation::Panel by_evaluations, by_time;
+  figures::Panel by_evaluations, by_time;
   by_evaluations.x_label = "Evaluations";
   by_time.x_label = "Wall time (ms)";
   by_evaluations.y_label = by_time.y_label = "Hypervolume lacking";
@@ -229,8 +228,8 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
   for (const algorithms::Algorithm& algorithm : algorithms::algorithms()) {
     const Records records = selection.anytime(algorithm.name, hardest_world(blocked));
     if (records.empty()) continue;
-    presentation::Series over = series_of(algorithm.name, presentation::Kind::band);
-    presentation::Series timed = over;
+    figures::Series over = series_of(algorithm.name, figures::Kind::band);
+    figures::Series timed = over;
     const std::size_t count = records.front()->series.at(key::kHvAt).size();
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<double> lacking, at;
@@ -238,10 +237,10 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
         lacking.push_back(best - r->series.at(key::kHvAt).at(i));
         at.push_back(r->series.at(key::kEvaluationsAt).at(i));
       }
-      add_mean(over, presentation::mean(at), lacking);
-      add_mean(timed, 1000.0 * presentation::summary(measured(records, key::seconds_at(i))).median, lacking);
+      add_mean(over, statistics::mean(at), lacking);
+      add_mean(timed, 1000.0 * statistics::summary(measured(records, key::seconds_at(i))).median, lacking);
     }
-    for (presentation::Series* series : {&over, &timed})
+    for (figures::Series* series : {&over, &timed})
       for (std::vector<double>* edge : {&series->y, &series->low, &series->high})
         for (double& value : *edge) value = std::max(value, kLeastLost);
     by_evaluations.series.push_back(std::move(over));

@@ -5,15 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "tools/lab/presentation/figure.hpp"
+#include "tools/figures/figure.hpp"
 #include "tools/lab/study/run.hpp"
 #include "tools/lab/study/selection.hpp"
 
 namespace jink::tools::lab::study {
 
+using jink::tools::figures::Figure;
+using jink::tools::figures::Kind;
+using jink::tools::figures::Panel;
+using jink::tools::figures::Series;
+
 /// A figure and what is said below it. Figures without any record are left out by all_figures().
 struct CaptionedFigure {
-  presentation::Figure figure;
+  Figure figure;
   std::string caption;
 };
 

@@ -19,16 +19,16 @@ Vec3 point(const Record& r, std::size_t i) {
   return {r.series.at(key::kX)[i], r.series.at(key::kY)[i], r.series.at(key::kZ)[i]};
 }
 
-void append(presentation::Series& series, const Vec3& p) {
+void append(figures::Series& series, const Vec3& p) {
   series.x.push_back(p.x());
   series.y.push_back(p.y());
   series.z.push_back(p.z());
 }
 
-presentation::Series path_series(const Record& r, std::string label, int style) {
-  presentation::Series series;
+figures::Series path_series(const Record& r, std::string label, int style) {
+  figures::Series series;
   series.label = std::move(label);
-  series.kind = presentation::Kind::line;
+  series.kind = figures::Kind::line;
   series.style = style;
   for (std::size_t i = 0; i < r.series.at(key::kT).size(); ++i) append(series, point(r, i));
   return series;
@@ -44,10 +44,10 @@ Vec3 position_at(const Record& r, double t) {
 }
 
 /// What has been flown by then, with the vehicle's place at its end.
-presentation::Series flown_series(const Record& r, double t, int style) {
-  presentation::Series series;
+figures::Series flown_series(const Record& r, double t, int style) {
+  figures::Series series;
   series.label = "flown";
-  series.kind = presentation::Kind::line_points;
+  series.kind = figures::Kind::line_points;
   series.style = style;
   const std::vector<double>& times = r.series.at(key::kT);
   for (std::size_t i = 0; i < times.size() && times[i] < t; ++i) append(series, point(r, i));
@@ -55,8 +55,8 @@ presentation::Series flown_series(const Record& r, double t, int style) {
   return series;
 }
 
-presentation::Panel space_panel(const World& world) {
-  presentation::Panel panel;
+figures::Panel space_panel(const World& world) {
+  figures::Panel panel;
   panel.x_label = "x (m)";
   panel.y_label = "y (m)";
   panel.z_label = "z (m)";
@@ -69,7 +69,7 @@ presentation::Panel space_panel(const World& world) {
 }
 
 /// Obstacles at time t, those within the panel.
-void add_obstacles(presentation::Panel& panel, const World& world, double t) {
+void add_obstacles(figures::Panel& panel, const World& world, double t) {
   const auto inside = [](double v, const std::optional<std::pair<double, double>>& range) {
     return v >= range->first && v <= range->second;
   };
@@ -102,7 +102,7 @@ std::vector<CaptionedFigure> picture_figures(const Selection& selection, const S
           r.value(key::kReached) > 0.0 ? "is free" : "is not free", r.value(key::kClearance));
       for (const double share : kMoments) {
         const double t = share * r.value(key::kFlight);
-        presentation::Panel panel = space_panel(world);
+        figures::Panel panel = space_panel(world);
         panel.title = fmt::format("t = {:.2f} s", t);
         panel.series = {path_series(r, "planned", 1), flown_series(r, t, 0)};
         add_obstacles(panel, world, t);
@@ -128,7 +128,7 @@ CaptionedFigure seeds_figure(const Selection& selection, const Setting& setting)
     const Records records = selection.paths(kRetained, name);
     if (records.empty()) continue;
     const World world = setting.scenes.world(name, 0);
-    presentation::Panel panel = space_panel(world);
+    figures::Panel panel = space_panel(world);
     panel.title = blocked ? "blocked" : "instance 1";
     for (std::size_t i = 0; i < std::min(kSeeds, records.size()); ++i)
       panel.series.push_back(

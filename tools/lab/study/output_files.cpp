@@ -2,11 +2,7 @@
 #include "tools/lab/study/output_files.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <atomic>
-#include <cstdlib>
-#include <sstream>
 #include <system_error>
 
 #include "config/scenario_writer.hpp"
@@ -31,17 +27,19 @@ void write_tables(const std::map<std::string, presentation::Table>& tables, cons
 }
 
 /// Several at once; each into files of its own.
-std::map<std::string, presentation::FigureFile> draw_figures(const std::vector<CaptionedFigure>& figures,
+std::map<std::string, presentation::FigureFile> draw_figures(const std::vector<CaptionedFigure>& drawings,
                                                              const fs::path& out, int threads) {
-  std::vector<presentation::FigureFile> drawn(figures.size());
+  std::vector<presentation::FigureFile> drawn(drawings.size());
   std::atomic<std::size_t> next{0};
   campaign::Workers workers;
   workers.run(
       threads,
       [&] {
         const std::size_t i = next++;
-        if (i >= figures.size()) return false;
-        drawn[i] = {figures[i].figure.id, figures[i].caption, presentation::draw(figures[i].figure, out).svg};
+        if (i >= drawings.size()) return false;
+        drawn[i] = {drawings[i].figure.id, drawings[i].caption,
+                    jink::tools::figures::svg_element(jink::tools::figures::draw(drawings[i].figure, out).svg,
+                                                      drawings[i].figure.id + '-')};
         return true;
       },
       [] {});
@@ -106,15 +104,6 @@ Json summary_json(const Selection& s, const ReportParts& parts, const fs::path& 
 }
 
 }  // namespace
-
-void require_gnuplot() {
-  const char* const path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe)
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (::access((fs::path(folder) / "gnuplot").c_str(), X_OK) == 0) return;
-  throw presentation::FigureError(
-      "gnuplot is not in PATH; the study's figures need it (Debian: apt install gnuplot-nox)");
-}
 
 Json write_study(const Results& results, const Setting& setting, const fs::path& out, int threads) {
   const Selection selection(results);

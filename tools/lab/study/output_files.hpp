@@ -10,9 +10,6 @@
 
 namespace jink::tools::lab::study {
 
-/// Throws FigureError where there is no gnuplot in PATH: better before hours of work than after.
-void require_gnuplot();
-
 /// Writes tableNN.csv, .md and .tex, figureNN.gp, .dat, .png and .svg, claims and verdicts likewise, worlds/,
 /// planner.yaml and report.html into the folder, which exists; figures are drawn by `threads` at once. Gives back the
 /// summary that --json writes. Throws ResultsError or FigureError where something cannot be written or drawn.

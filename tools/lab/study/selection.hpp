@@ -8,10 +8,25 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/lab/presentation/statistics.hpp"
+#include "tools/lab/statistics/ranks.hpp"
+#include "tools/lab/statistics/samples.hpp"
 #include "tools/lab/study/results.hpp"
 
 namespace jink::tools::lab::study {
+
+using jink::tools::lab::statistics::Comparison;
+using jink::tools::lab::statistics::fisher_lsd;
+using jink::tools::lab::statistics::Friedman;
+using jink::tools::lab::statistics::friedman;
+using jink::tools::lab::statistics::friedman_ranks;
+using jink::tools::lab::statistics::Lsd;
+using jink::tools::lab::statistics::mean;
+using jink::tools::lab::statistics::Proportion;
+using jink::tools::lab::statistics::rank_sums;
+using jink::tools::lab::statistics::Scores;
+using jink::tools::lab::statistics::Summary;
+using jink::tools::lab::statistics::summary;
+using jink::tools::lab::statistics::wilson;
 
 /// The records of one variant in the order of runs; some may be missing.
 using Records = std::vector<const Record*>;

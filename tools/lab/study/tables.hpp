@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "tools/lab/presentation/statistics.hpp"
 #include "tools/lab/presentation/table.hpp"
 #include "tools/lab/study/selection.hpp"
 #include "tools/lab/study/worlds.hpp"
@@ -33,7 +32,7 @@ inline constexpr double kSameSlr = 1e-6;
 /// then by the mean SLR of the others in steps of kSameSlr; by time: the mean planning time. None where runs are
 /// missing.
 enum class Criterion { kLength, kTime };
-[[nodiscard]] std::optional<presentation::Scores> scores(const Selection& selection, Criterion criterion, bool blocked);
+[[nodiscard]] std::optional<Scores> scores(const Selection& selection, Criterion criterion, bool blocked);
 
 /// Tables 8 to 11, with "table10-pairs" and "table11-pairs": p-values and Holm's correction. LSD marks pairs only where
 /// Friedman's test, by F, found that the algorithms differ. Empty where runs are missing.

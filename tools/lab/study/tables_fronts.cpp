@@ -82,7 +82,7 @@ std::vector<std::string> statistics_of_rows() {
 
 double statistic(const std::vector<double>& sample, std::string_view which, Direction direction) {
   if (sample.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const presentation::Summary s = presentation::summary(sample);
+  const statistics::Summary s = statistics::summary(sample);
   const bool smaller = direction == Direction::kSmallerIsBetter;
   if (which == "Best") return smaller ? s.least : s.greatest;
   if (which == "Worst") return smaller ? s.greatest : s.least;
@@ -123,12 +123,12 @@ std::string late_loss(const Records& records, const std::vector<double>& shares,
   if (records.size() < 2) return {};
   std::size_t best = 0;
   for (std::size_t i = 1; i < shares.size(); ++i)
-    if (presentation::mean(hv_at(records, i)) > presentation::mean(hv_at(records, best))) best = i;
+    if (statistics::mean(hv_at(records, i)) > statistics::mean(hv_at(records, best))) best = i;
   std::vector<double> lost = hv_at(records, best);
   const std::vector<double> end = hv_at(records, shares.size() - 1);
   std::transform(lost.begin(), lost.end(), end.begin(), lost.begin(), std::minus<>());
-  if (presentation::summary(lost).low <= 0.0) return {};
-  return fmt::format("{} ({:.4f} at {:g} %)", name, presentation::mean(hv_at(records, best)), 100.0 * shares[best]);
+  if (statistics::summary(lost).low <= 0.0) return {};
+  return fmt::format("{} ({:.4f} at {:g} %)", name, statistics::mean(hv_at(records, best)), 100.0 * shares[best]);
 }
 
 }  // namespace
@@ -159,13 +159,13 @@ presentation::Table anytime_table(const Selection& selection, bool blocked) {
         row.push_back(presentation::nothing());
         continue;
       }
-      const presentation::Summary s = presentation::summary(at);
+      const statistics::Summary s = statistics::summary(at);
       presentation::Cell cell = presentation::number(s.mean, 4);
       if (at.size() > 1) cell.text += fmt::format(" ± {:.4f}", s.high - s.mean);
       row.push_back(std::move(cell));
     }
     const auto all = scaled(measured(records, key::seconds_at(shares.size() - 1)), 1000.0);
-    row.push_back(all.empty() ? presentation::nothing() : presentation::number(presentation::mean(all), 3));
+    row.push_back(all.empty() ? presentation::nothing() : presentation::number(statistics::mean(all), 3));
     table.rows.push_back(std::move(row));
     const std::string loss = late_loss(records, shares, std::string(algorithm.label));
     if (loss.empty()) continue;

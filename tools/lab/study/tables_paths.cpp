@@ -102,15 +102,15 @@ presentation::Table flight_table(const Selection& selection, bool blocked) {
   return table;
 }
 
-presentation::Table rank_table(const presentation::Scores& scores, const char* id, const char* what, bool blocked) {
+presentation::Table rank_table(const statistics::Scores& scores, const char* id, const char* what, bool blocked) {
   presentation::Table table;
   table.id = table_id(id, blocked);
   table.title = fmt::format("Friedman ranks of the algorithms by {} in {}", what, worlds_text(blocked));
   table.columns = {"Algorithm"};
   for (const std::string& world : numbered_worlds(blocked)) table.columns.push_back(world_number(world));
   table.columns.emplace_back("Sum of ranks");
-  const presentation::Scores ranks = presentation::friedman_ranks(scores);
-  const std::vector<double> sums = presentation::rank_sums(ranks);
+  const statistics::Scores ranks = statistics::friedman_ranks(scores);
+  const std::vector<double> sums = statistics::rank_sums(ranks);
   const auto rank = [](double value, std::string printed) {
     return presentation::number(value, value == std::round(value) ? 0 : 1, std::move(printed));
   };
@@ -129,7 +129,7 @@ std::string p_text(double p) {
   return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", p);
 }
 
-void add_friedman(presentation::Table& table, const presentation::Friedman& f, const char* id, bool blocked) {
+void add_friedman(presentation::Table& table, const statistics::Friedman& f, const char* id, bool blocked) {
   const std::string printed = paper_text(blocked, id, "all", "all", "Iman-Davenport F");
   table.notes.push_back(fmt::format(
       "Friedman: chi-square {:.3f}, {}; Iman and Davenport: F = {:.3f}{}, {}, critical {:.4f} at 5 %: the algorithms "
@@ -142,7 +142,7 @@ constexpr const char* kUnprotected =
     "LSD marks nothing here: it is for when the test by ranks finds that the algorithms differ, which it does not.";
 
 /// Differences of rank sums, as Tables 10 and 11 have them. `differ`: Friedman's test found that the algorithms do.
-presentation::Table matrix_table(const presentation::Lsd& lsd, bool differ, const char* id, const char* what,
+presentation::Table matrix_table(const statistics::Lsd& lsd, bool differ, const char* id, const char* what,
                                  bool blocked) {
   const std::vector<std::string> own = own_algorithms();
   presentation::Table table;
@@ -153,7 +153,7 @@ presentation::Table matrix_table(const presentation::Lsd& lsd, bool differ, cons
   for (std::size_t b = 1; b < own.size(); ++b) table.columns.push_back(label_of(own[b]));
   for (std::size_t a = 0; a + 1 < own.size(); ++a) table.rows.emplace_back(1, presentation::label(label_of(own[a])));
   for (auto& row : table.rows) row.resize(own.size(), presentation::label(""));
-  for (const presentation::Comparison& pair : lsd.pairs) {
+  for (const statistics::Comparison& pair : lsd.pairs) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
     const double difference = std::abs(pair.difference);
@@ -165,9 +165,9 @@ presentation::Table matrix_table(const presentation::Lsd& lsd, bool differ, cons
   }
   const std::string printed = paper_text(blocked, id, "all", "all", "critical difference");
   const auto kept =
-      std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const presentation::Comparison& c) { return c.holm; });
+      std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const statistics::Comparison& c) { return c.holm; });
   const auto found =
-      std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const presentation::Comparison& c) { return c.lsd; });
+      std::count_if(lsd.pairs.begin(), lsd.pairs.end(), [](const statistics::Comparison& c) { return c.lsd; });
   table.notes.push_back(fmt::format(
       "{} the least significant difference {:.4f}{}, as the paper has it, one-sided; two-sided it is {:.4f}.",
       differ ? "Bold: more than" : "Not used:", lsd.critical,
@@ -178,7 +178,7 @@ presentation::Table matrix_table(const presentation::Lsd& lsd, bool differ, cons
   return table;
 }
 
-presentation::Table pairs_table(const presentation::Lsd& lsd, bool differ, const char* id, const char* what,
+presentation::Table pairs_table(const statistics::Lsd& lsd, bool differ, const char* id, const char* what,
                                 bool blocked) {
   const std::vector<std::string> own = own_algorithms();
   presentation::Table table;
@@ -187,7 +187,7 @@ presentation::Table pairs_table(const presentation::Lsd& lsd, bool differ, const
       fmt::format("Paired comparison by {} in {}: p-values and Holm's correction", what, worlds_text(blocked));
   table.columns = {"Algorithm", "Against", "Difference of rank sums", "p", "p (Holm)"};
   table.label_columns = 2;
-  for (const presentation::Comparison& pair : lsd.pairs) {
+  for (const statistics::Comparison& pair : lsd.pairs) {
     presentation::Cell difference =
         presentation::number(pair.difference, pair.difference == std::round(pair.difference) ? 0 : 1);
     difference.marked = differ && pair.lsd;
@@ -210,21 +210,21 @@ std::vector<presentation::Table> path_tables(const Selection& selection, bool bl
   return {slr_table(selection, blocked), planning_table(selection, blocked), flight_table(selection, blocked)};
 }
 
-std::optional<presentation::Scores> scores(const Selection& selection, Criterion criterion, bool blocked) {
+std::optional<statistics::Scores> scores(const Selection& selection, Criterion criterion, bool blocked) {
   constexpr double kFailureWeight = 1000.0;  // any share of failures outweighs any length
-  presentation::Scores result;
+  statistics::Scores result;
   for (const std::string& algorithm : own_algorithms()) {
     std::vector<double> row;
     for (const std::string& world : numbered_worlds(blocked)) {
       const Records all = selection.paths(algorithm, world);
       if (all.empty()) return std::nullopt;
       if (criterion == Criterion::kTime) {
-        row.push_back(presentation::mean(measured(all, key::kPlanning)));
+        row.push_back(statistics::mean(measured(all, key::kPlanning)));
         continue;
       }
       const Records free = reached(all);
       const double failed = 1.0 - static_cast<double>(free.size()) / static_cast<double>(all.size());
-      const double slr = free.empty() ? kFailureWeight : presentation::mean(values(free, key::kSlr));
+      const double slr = free.empty() ? kFailureWeight : statistics::mean(values(free, key::kSlr));
       row.push_back(kFailureWeight * failed + std::round(slr / kSameSlr) * kSameSlr);
     }
     result.push_back(std::move(row));
@@ -240,10 +240,10 @@ std::vector<presentation::Table> rank_tables(const Selection& selection, bool bl
   };
   for (const Ids& ids : {Ids{Criterion::kLength, "table08", "table10", "table10-pairs", "mean SLR"},
                          Ids{Criterion::kTime, "table09", "table11", "table11-pairs", "mean planning time"}}) {
-    const std::optional<presentation::Scores> found = scores(selection, ids.criterion, blocked);
+    const std::optional<statistics::Scores> found = scores(selection, ids.criterion, blocked);
     if (!found) continue;
-    const presentation::Scores by_world = presentation::friedman_ranks(*found);
-    const presentation::Friedman test = presentation::friedman(by_world);
+    const statistics::Scores by_world = statistics::friedman_ranks(*found);
+    const statistics::Friedman test = statistics::friedman(by_world);
     presentation::Table table = rank_table(*found, ids.ranks, ids.what, blocked);
     add_friedman(table, test, ids.ranks, blocked);
     if (ids.criterion == Criterion::kLength && blocked)
@@ -252,7 +252,7 @@ std::vector<presentation::Table> rank_tables(const Selection& selection, bool bl
       table.notes.push_back(fmt::format("Means are ranked in steps of {:g}.", kSameSlr));
     if (ids.criterion == Criterion::kTime) table.notes.push_back(timing_note(selection));
     ranks.push_back(std::move(table));
-    const presentation::Lsd lsd = presentation::fisher_lsd(by_world);
+    const statistics::Lsd lsd = statistics::fisher_lsd(by_world);
     comparisons.push_back(matrix_table(lsd, test.rejected, ids.matrix, ids.what, blocked));
     comparisons.push_back(pairs_table(lsd, test.rejected, ids.pairs, ids.what, blocked));
   }

@@ -103,7 +103,7 @@ presentation::Table picture_table(const Selection& selection, const StudyWorlds&
          presentation::label(vectors(scenario, [](const config::LinearMotion& m) { return m.position; })),
          presentation::label(vectors(scenario, [](const config::LinearMotion& m) { return m.velocity; })),
          presentation::label(fmt::format("{}/{}", free.size(), all.size())),
-         free.empty() ? presentation::nothing() : presentation::number(presentation::mean(slr), 6),
+         free.empty() ? presentation::nothing() : presentation::number(statistics::mean(slr), 6),
          free.empty() ? presentation::nothing() : presentation::number(*std::max_element(slr.begin(), slr.end()), 6),
          free.empty() ? presentation::nothing()
                       : presentation::number(*std::min_element(clearance.begin(), clearance.end()), 3)});
@@ -116,11 +116,11 @@ presentation::Table picture_table(const Selection& selection, const StudyWorlds&
 std::vector<presentation::Table> sensitivity_tables(const Selection& selection, bool blocked) {
   presentation::Table length = sensitivity_table(
       selection, "table13", "Mean path length (m) over iterations and population in " + world_text(blocked), 6, blocked,
-      "length", [](const Records& all) { return presentation::mean(values(reached(all), key::kLength)); });
+      "length", [](const Records& all) { return statistics::mean(values(reached(all), key::kLength)); });
   length.notes.push_back("Of the paths that reach.");
   presentation::Table time = sensitivity_table(
       selection, "table14", "Mean planning time (ms) over iterations and population in " + world_text(blocked), 3,
-      blocked, "time", [](const Records& all) { return 1000.0 * presentation::mean(measured(all, key::kPlanning)); });
+      blocked, "time", [](const Records& all) { return 1000.0 * statistics::mean(measured(all, key::kPlanning)); });
   time.notes.push_back(timing_note(selection));
   std::vector<presentation::Table> tables{std::move(length)};
   if (blocked) tables.push_back(reached_table(selection));
@@ -185,7 +185,7 @@ presentation::Table success_table(const Selection& selection) {
     row.push_back(of == 0
                       ? presentation::nothing()
                       : presentation::label(fmt::format("{:.1f} to {:.1f}", 100.0 * share.low, 100.0 * share.high)));
-    row.push_back(slr.empty() ? presentation::nothing() : presentation::number(presentation::mean(slr), 4));
+    row.push_back(slr.empty() ? presentation::nothing() : presentation::number(statistics::mean(slr), 4));
     table.rows.push_back(std::move(row));
   }
   table.notes.push_back(

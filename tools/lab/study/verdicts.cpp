@@ -85,7 +85,7 @@ Verdict judge(const std::vector<double>& differences, double resolution) {
   Verdict verdict;
   verdict.pairs = static_cast<int>(differences.size());
   if (differences.empty()) return verdict;
-  const presentation::Summary s = presentation::summary(differences);
+  const statistics::Summary s = statistics::summary(differences);
   verdict.mean = s.mean;
   verdict.low = s.low;
   verdict.high = s.high;

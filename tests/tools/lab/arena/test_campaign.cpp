@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using support::Folder;
+using support::read;
 
 config::Settings quick_planner() {
   config::Settings settings;
@@ -70,12 +71,6 @@ Flown fly_in(const fs::path& out, const CampaignSettings& settings, int threads,
 std::string text_of(Results results) {
   for (auto& flight : results.flights) flight.second.measured = {};
   return to_text(results) + table_csv(summarise(results)) + flights_csv(results, "out");
-}
-
-std::string read(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 TEST(Campaign, IsTheSameAtAnyThreadCountAndInShards) {

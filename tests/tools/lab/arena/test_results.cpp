@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <functional>
 #include <set>
 #include <sstream>
 
@@ -13,32 +11,15 @@ namespace jink::tools::lab::arena {
 namespace {
 
 using support::Folder;
+using support::has;
+using support::read;
+using support::refusal;
+using support::write;
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary) << text;
-}
-std::string read(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const ResultsError& error) {
-    return error.what();
-  }
-  return "";
-}
 std::string refusal_of(const std::filesystem::path& file, const std::string& text) {
   write(file, text);
-  return refusal([&] { static_cast<void>(read_results(file)); });
+  return refusal<ResultsError>([&] { static_cast<void>(read_results(file)); });
 }
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(WorldSeed, IsAnotherOneForEachRunFamilyAndSeed) {
   std::set<std::uint64_t> of_runs;
   for (int run = 0; run < 20000; ++run) of_runs.insert(world_seed(1, "crossing", run));
@@ -155,7 +136,8 @@ TEST(Results, WhatNoCampaignWroteIsNamedWithItsLine) {
   EXPECT_TRUE(has(refusal_of(file, header + other), name + ":2: flight 4 is not of this campaign"));
   other.replace(other.find("\"job\":4"), 7, "\"job\":1");
   EXPECT_TRUE(has(refusal_of(file, header + other), name + ":2: flight 1 should be crossing-"));
-  EXPECT_TRUE(has(refusal([&] { static_cast<void>(read_results(folder.path() / "none")); }), "none: cannot be read"));
+  EXPECT_TRUE(has(refusal<ResultsError>([&] { static_cast<void>(read_results(folder.path() / "none")); }),
+                  "none: cannot be read"));
 }
 
 TEST(Results, OneFlightHasOneResult) {
@@ -169,7 +151,7 @@ TEST(Results, OneFlightHasOneResult) {
   results.add(again);  // the wall clock is no result
   EXPECT_EQ(results.flights.size(), 1U);
   again.min_clearance = 0.4;
-  EXPECT_TRUE(has(refusal([&] { results.add(again); }), "has two different results"));
+  EXPECT_TRUE(has(refusal<ResultsError>([&] { results.add(again); }), "has two different results"));
 }
 
 TEST(ResultsFile, GoesOnBehindTheLastWholeLine) {
@@ -192,10 +174,12 @@ TEST(ResultsFile, IsOneProcessesOwn) {
   const Results results = all_reached(two_families(1));
   {
     const ResultsFile first(file, results);
-    EXPECT_TRUE(has(refusal([&] { const ResultsFile second(file, results); }), "another process is writing there"));
+    EXPECT_TRUE(has(refusal<ResultsError>([&] { const ResultsFile second(file, results); }),
+                    "another process is writing there"));
   }
   const ResultsFile later(file, results);
-  EXPECT_TRUE(has(refusal([&] { const ResultsFile none(folder.path() / "no" / "x", results); }), "cannot be written"));
+  EXPECT_TRUE(has(refusal<ResultsError>([&] { const ResultsFile none(folder.path() / "no" / "x", results); }),
+                  "cannot be written"));
 }
 
 TEST(Merge, OfTheShardsIsTheWhole) {
@@ -223,7 +207,9 @@ TEST(Merge, RefusesOtherSettingsAndOtherResults) {
   other.seed = 2;
   write(results_path(folder.path() / "c"), to_text(all_reached(other)));
   const auto merge = [&](const char* second) {
-    return refusal([&] { static_cast<void>(merge_results({folder.path() / "a", folder.path() / second})); });
+    return refusal<ResultsError>([&] {
+      static_cast<void>(merge_results({folder.path() / "a", folder.path() / second}));
+    });
   };
   EXPECT_TRUE(has(merge("b"), "flight 2 (falling:")) << merge("b");
   EXPECT_TRUE(has(merge("b"), "two different results"));

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <functional>
-
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tools/lab/study/small_study.hpp"
 
@@ -11,24 +8,9 @@ namespace jink::tools::lab::study {
 namespace {
 
 using support::Folder;
-
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const ResultsError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+using support::has;
+using support::refusal;
+using support::write;
 
 TEST(Record, ReadsBackToTheSameBits) {
   for (const Job& job : jobs_of(small_study())) {
@@ -63,7 +45,7 @@ TEST(StudyResults, RefuseWhatNoStudyWroteWithFileAndLine) {
   const Job job = jobs_of(settings).front();
   const auto refused = [&](const std::string& text) {
     write(file, text);
-    return refusal([&] { static_cast<void>(read_results(file)); });
+    return refusal<ResultsError>([&] { static_cast<void>(read_results(file)); });
   };
   const auto line = [&](const std::function<void(nlohmann::ordered_json&)>& change) {
     nlohmann::ordered_json json = to_json(empty_record(job));
@@ -97,7 +79,7 @@ TEST(StudyResults, OfShardsMergeToTheWholeAndOnesThatContradictAreRefused) {
   Results wrong = whole;
   wrong.runs.begin()->second.values[key::kHv] = 2.0;
   write(results_path(folder.path() / "wrong"), to_text(wrong));
-  EXPECT_TRUE(has(refusal([&] {
+  EXPECT_TRUE(has(refusal<ResultsError>([&] {
                     static_cast<void>(merge_results({folder.path() / "1", folder.path() / "wrong"}));
                   }),
                   "has two different results"));
@@ -108,7 +90,7 @@ TEST(StudyResults, OfShardsMergeToTheWholeAndOnesThatContradictAreRefused) {
   settings.shard = {};
   settings.seed = 2;
   write(results_path(folder.path() / "other"), to_text(empty_results(settings)));
-  EXPECT_TRUE(has(refusal([&] {
+  EXPECT_TRUE(has(refusal<ResultsError>([&] {
                     static_cast<void>(merge_results({folder.path() / "1", folder.path() / "other"}));
                   }),
                   "seed: 1 in "));

@@ -120,10 +120,10 @@ TEST(RankTables, OfBlockedWorldsPutWhoFailsLessOftenFirst) {
     if (r.job.variant.algorithm == "momvo") r.values[key::kSlr] = 1.5;
     if (r.job.variant.algorithm == "pmomvo-2") r.values[key::kReached] = r.job.run;  // one fails, the other is short
   });
-  const std::optional<presentation::Scores> found = scores(Selection(results), Criterion::kLength, true);
+  const std::optional<statistics::Scores> found = scores(Selection(results), Criterion::kLength, true);
   ASSERT_TRUE(found);
-  EXPECT_EQ(presentation::friedman_ranks(*found)[0][0], 6.0);
-  EXPECT_EQ(presentation::friedman_ranks(*found)[1][0], 7.0);
+  EXPECT_EQ(statistics::friedman_ranks(*found)[0][0], 6.0);
+  EXPECT_EQ(statistics::friedman_ranks(*found)[1][0], 7.0);
 }
 
 TEST(RankTables, DoNotRankTheLastBitsOfLengths) {
@@ -147,7 +147,7 @@ TEST(RankTables, MarkNoPairsWhereFriedmansTestFindsNothing) {
     if (v.kind != RunKind::kPath || a == own.size() || is_blocked(v.world) || is_pictured(v.world)) return;
     r.measured[key::kPlanning] = by_algorithm[a][static_cast<std::size_t>(std::stoi(world_number(v.world)) - 1)];
   });
-  ASSERT_TRUE(presentation::fisher_lsd(by_algorithm).pairs[5].lsd) << "MOMVO against PMOMVO-12";
+  ASSERT_TRUE(statistics::fisher_lsd(by_algorithm).pairs[5].lsd) << "MOMVO against PMOMVO-12";
   const std::vector<presentation::Table> tables = rank_tables(Selection(results), false);
   for (const char* id : {"table11", "table11-pairs"}) {
     EXPECT_EQ(marks_of(find(tables, id)), 0U) << id;
@@ -256,7 +256,7 @@ TEST(StudyOutput, OfAStudyThatHasHardlyBegunLeavesPlacesEmptyAndSaysSo) {
     EXPECT_TRUE(parts.tables.emplace(table.id, table).second) << table.id << " is there twice";
   }
   for (const CaptionedFigure& figure : all_figures(selection, setting))
-    EXPECT_NO_THROW(static_cast<void>(presentation::gnuplot_script(figure.figure))) << figure.figure.id;
+    EXPECT_NO_THROW(static_cast<void>(figures::gnuplot_script(figure.figure))) << figure.figure.id;
   parts.claims = judge_claims(selection);
   EXPECT_NE(presentation::report_html(study_report(selection, setting, parts)).find("Incomplete:"), std::string::npos);
   results.runs.clear();

@@ -1,89 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures are drawn and looked at: where a bar is, there is colour; where nothing is, there is none; labels are text.
-#include "tools/lab/presentation/figure.hpp"
+// Figures are drawn and looked at: what the SVG holds in a colour, and where; labels are text. The PNG is the same
+// script's.
+#include "tools/figures/figure.hpp"
 
-#include <cairo.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <functional>
-#include <iterator>
 #include <limits>
-#include <memory>
+#include <regex>
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::figures {
 namespace {
 
 using support::Folder;
+using support::read;
 
-/// A PNG, decoded.
-class Image {
- public:
-  explicit Image(const std::filesystem::path& file)
-      : surface_(cairo_image_surface_create_from_png(file.c_str()), cairo_surface_destroy) {
-    EXPECT_EQ(cairo_surface_status(surface_.get()), CAIRO_STATUS_SUCCESS) << file;
-  }
-  [[nodiscard]] int width() const { return cairo_image_surface_get_width(surface_.get()); }
-  [[nodiscard]] int height() const { return cairo_image_surface_get_height(surface_.get()); }
-  struct Pixel {
-    int red = 0, green = 0, blue = 0;
-  };
-  [[nodiscard]] Pixel at(int x, int y) const {
-    std::uint32_t pixel = 0;
-    const auto stride = cairo_image_surface_get_stride(surface_.get());
-    std::memcpy(&pixel, cairo_image_surface_get_data(surface_.get()) + y * stride + 4 * x, 4);
-    return {static_cast<int>(pixel >> 16U & 255U), static_cast<int>(pixel >> 8U & 255U),
-            static_cast<int>(pixel & 255U)};
-  }
-
- private:
-  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
+/// What is drawn with one stroke: where it is, in pixels of 1/96 inch, y down.
+struct Mark {
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  [[nodiscard]] double width() const { return right - left; }
+  [[nodiscard]] double height() const { return bottom - top; }
 };
 
-using Colour = std::function<bool(const Image::Pixel&)>;
-bool is_blue(const Image::Pixel& p) {
-  return p.blue > p.red + 60 && p.blue > p.green + 20;
-}
-bool is_orange(const Image::Pixel& p) {
-  return p.red > p.blue + 60 && p.green > p.blue + 40;
-}
-bool is_black(const Image::Pixel& p) {
-  return p.red < 30 && p.green < 30 && p.blue < 30;
-}
-bool is_grey(const Image::Pixel& p) {
-  return p.red == p.green && p.green == p.blue && p.red > 120 && p.red < 200;
-}
+constexpr const char *kBlue = "rgb(  0, 114, 178)", *kOrange = "rgb(230, 159,   0)", *kBlack = "rgb(  0,   0,   0)";
 
-/// The pixels of a part of an image that pass a test; sides in shares of its width.
-struct Patch {
-  int left = 1 << 30, right = -1, top = 1 << 30, bottom = -1;
-  long count = 0;
-};
-Patch find(const Image& image, const Colour& test, double from = 0.0, double to = 1.0) {
-  Patch patch;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = static_cast<int>(from * image.width()); x < static_cast<int>(to * image.width()); ++x) {
-      if (!test(image.at(x, y))) continue;
-      patch.left = std::min(patch.left, x);
-      patch.right = std::max(patch.right, x);
-      patch.top = std::min(patch.top, y);
-      patch.bottom = std::max(patch.bottom, y);
-      ++patch.count;
+/// The marks of a colour, from left to right: "polygon" (bars, boxes, areas), "path" (lines) or "use" (points).
+std::vector<Mark> find(const std::string& svg, const std::string& element, const std::string& colour) {
+  std::vector<Mark> marks;
+  const std::regex number(R"((-?[0-9.]+),(-?[0-9.]+))");
+  for (std::size_t at = 0; (at = svg.find('<' + element + ' ', at)) != std::string::npos;) {
+    const std::string text = svg.substr(at, svg.find("/>", at) - at);
+    at += text.size();
+    if (text.find(colour) == std::string::npos) continue;
+    const char* const where = element == "polygon" ? "points =" : element == "path" ? " d=" : "translate(";
+    const std::string points = text.substr(text.find(where));
+    Mark mark;
+    for (std::sregex_iterator found(points.begin(), points.end(), number), end; found != end; ++found) {
+      const double x = std::stod((*found)[1]), y = std::stod((*found)[2]);
+      mark.left = std::min(mark.left, x);
+      mark.right = std::max(mark.right, x);
+      mark.top = std::min(mark.top, y);
+      mark.bottom = std::max(mark.bottom, y);
+      if (element == "use") break;  // behind the place is the size
     }
+    marks.push_back(mark);
   }
-  return patch;
+  std::stable_sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.left < b.left; });
+  return marks;
 }
 
-std::string read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+/// Of a PNG's header.
+std::array<unsigned, 2> size_of(const std::string& png) {
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8U | static_cast<unsigned char>(png.at(i));
+    return value;
+  };
+  return {number(16), number(20)};
 }
 
 Series series(std::vector<double> x, std::vector<double> y, Kind kind, std::string label = "") {
@@ -116,68 +96,59 @@ Figure in_space() {
 }
 
 TEST(Figure, BarsStandWhereTheyShouldAndAreAsHighAsTheirNumbers) {
-  const Folder folder;
   Figure figure = figure_of(series({0, 1}, {4.0, 2.0}, Kind::bars));
   figure.panels[0].categories = {"one", "two"};
   figure.panels[0].y_range = {{0.0, 5.0}};
-  const Image image(draw(figure, folder.path()).png);
-  EXPECT_EQ(image.width(), 1063);  // 90 mm at 300 dots an inch
-  const Patch all = find(image, is_blue);
-  const double middle = 0.5 * (all.left + all.right) / image.width();
-  const Patch left = find(image, is_blue, 0.0, middle), right = find(image, is_blue, middle, 1.0);
-  EXPECT_EQ(left.bottom, right.bottom);
-  EXPECT_NEAR(static_cast<double>(left.bottom - left.top) / (right.bottom - right.top), 2.0, 0.05);
-  EXPECT_GT(right.left, left.right + 20);  // a gap between
-  EXPECT_NEAR(left.right - left.left, right.right - right.left, 2);
+  const std::vector<Mark> bars = find(svg_of(figure), "polygon", kBlue);
+  ASSERT_EQ(bars.size(), 2U);
+  EXPECT_EQ(bars[0].bottom, bars[1].bottom);
+  EXPECT_NEAR(bars[0].height() / bars[1].height(), 2.0, 0.01);
+  EXPECT_GT(bars[1].left, bars[0].right + 5.0);  // a gap between
+  EXPECT_NEAR(bars[0].width(), bars[1].width(), 0.1);
 }
 
 TEST(Figure, BarsOnALogarithmicAxisRiseFromItsBottom) {
-  const Folder folder;
   Figure figure = figure_of(series({0, 1}, {0.1, 10.0}, Kind::bars));
   figure.panels[0].log_y = true;
   figure.panels[0].y_range = {{0.01, 10.0}};
-  const Image image(draw(figure, folder.path()).png);
-  const Patch all = find(image, is_blue);
-  const double middle = 0.5 * (all.left + all.right) / image.width();
-  const Patch left = find(image, is_blue, 0.0, middle), right = find(image, is_blue, middle, 1.0);
-  EXPECT_NEAR(static_cast<double>(right.bottom - right.top) / (left.bottom - left.top), 3.0, 0.1);  // decades
+  const std::vector<Mark> bars = find(svg_of(figure), "polygon", kBlue);
+  ASSERT_EQ(bars.size(), 2U);
+  EXPECT_NEAR(bars[1].height() / bars[0].height(), 3.0, 0.01);  // decades
 }
 
 TEST(Figure, SeveralBarsStandSideBySide) {
-  const Folder folder;
   Figure figure = figure_of(series({0, 1}, {1, 2}, Kind::bars, "a"));
   figure.panels[0].series[0].style = 1;
   figure.panels[0].series.push_back(series({0, 1}, {2, 1}, Kind::bars, "b"));
   figure.panels[0].series[1].style = 2;
   figure.panels[0].legend = false;
-  const Image image(draw(figure, folder.path()).png);
-  const Patch orange = find(image, is_orange), blue = find(image, is_blue);
-  EXPECT_GT(orange.count, 2000);
-  EXPECT_GT(blue.count, 2000);
-  EXPECT_LT(orange.left, blue.left);  // of the first place, the first series
-  EXPECT_LT(orange.right, blue.right);
-  EXPECT_NEAR(orange.top, blue.top, 2);  // both reach 2
+  const std::string svg = svg_of(figure);
+  const std::vector<Mark> orange = find(svg, "polygon", kOrange), blue = find(svg, "polygon", kBlue);
+  ASSERT_EQ(orange.size(), 2U);
+  ASSERT_EQ(blue.size(), 2U);
+  EXPECT_LE(orange[0].right, blue[0].left);  // of the first place, the first series
+  EXPECT_LT(blue[0].right, orange[1].left);
+  EXPECT_EQ(orange[1].top, blue[0].top);  // both reach 2
 }
 
 TEST(Figure, IntervalsReachFromLowToHigh) {
-  const Folder folder;
-  Series s = series({0, 1, 2}, {1, 2, 3}, Kind::line_points);
-  s.style = 2;
-  const Patch without = find(Image(draw(figure_of(s), folder.path()).png), is_blue);
-  Figure figure = figure_of(s);
+  Figure figure = figure_of(series({0, 1, 2}, {1, 2, 3}, Kind::points));
+  figure.panels[0].series[0].style = 2;
+  EXPECT_TRUE(find(svg_of(figure), "path", kBlue).empty());
   figure.panels[0].y_range = {{0.0, 6.0}};
   figure.panels[0].series[0].low = {0.5, 1.0, 1.0};
   figure.panels[0].series[0].high = {1.5, 3.0, 6.0};
-  const Image image(draw(figure, folder.path()).png);
-  const Patch with = find(image, is_blue);
-  const Patch last = find(image, is_blue, static_cast<double>(with.right - 40) / image.width(), 1.0);
-  EXPECT_GT(without.count, 500);
-  EXPECT_GT(last.bottom - last.top, image.height() / 2);  // 5 of the axis' 6
+  const std::string svg = svg_of(figure);
+  const std::vector<Mark> points = find(svg, "use", kBlue), all = find(svg, "path", kBlue);
+  ASSERT_EQ(all.size(), 1U);  // one stroke
+  ASSERT_EQ(points.size(), 3U);
+  const double unit = (points[0].top - points[2].top) / 2.0;
+  EXPECT_NEAR(all[0].height() / unit, 5.5, 0.01);  // from 0.5 to 6
+  EXPECT_NEAR((all[0].bottom - points[0].top) / unit, 0.5, 0.01);
 }
 
 TEST(Figure, EachKindOfCurveIsDrawn) {
-  for (const Kind kind : {Kind::line, Kind::line_points, Kind::points, Kind::steps, Kind::band}) {
-    const Folder folder;
+  for (const Kind kind : {Kind::line, Kind::line_points, Kind::points, Kind::band, Kind::areas}) {
     Series s = series({1, 10, 100}, {1, 2, 4}, kind, "Curve");
     s.style = 2;
     if (kind == Kind::band) {
@@ -187,58 +158,135 @@ TEST(Figure, EachKindOfCurveIsDrawn) {
     Figure figure = figure_of(s);
     figure.panels[0].log_x = true;
     figure.panels[0].legend = false;
-    const Patch patch = find(Image(draw(figure, folder.path()).png), is_blue);
-    EXPECT_GT(patch.count, 300) << static_cast<int>(kind);
-    EXPECT_GT(patch.right - patch.left, 600) << static_cast<int>(kind);
+    const std::string svg = svg_of(figure);
+    double left = 1e9, right = 0.0;
+    for (const char* element : {"polygon", "path", "use"}) {
+      for (const Mark& mark : find(svg, element, kBlue)) {
+        left = std::min(left, mark.left);
+        right = std::max(right, mark.right);
+      }
+    }
+    EXPECT_GT(right - left, 200.0) << static_cast<int>(kind);  // of 340
+    EXPECT_EQ(find(svg, "use", kBlue).size(), kind == Kind::line_points || kind == Kind::points ? 3U : 0U);
   }
 }
 
 TEST(Figure, ABandFillsItsInterval) {
-  const Folder folder;
   Series s = series({0, 1, 2}, {3, 3, 3}, Kind::band);
   s.low = {1, 1, 1};
-  s.high = {5, 5, 5};
+  s.high = {4, 4, 4};
+  s.style = 2;
   Figure figure = figure_of(s);
-  figure.panels[0].y_range = {{0.0, 6.0}};
-  const Image image(draw(figure, folder.path()).png);
-  const Patch line = find(image, is_black, 0.4, 0.6);
-  const auto shade = [&](double share) {  // above the line, in shares of the axis
-    return image.at(image.width() / 2, line.top - static_cast<int>(share * 0.75 * image.height())).red;
-  };
-  EXPECT_LT(shade(0.2), 240);
-  EXPECT_EQ(shade(0.42), 255);
+  const std::string svg = svg_of(figure);
+  const std::vector<Mark> band = find(svg, "polygon", kBlue), line = find(svg, "path", kBlue);
+  ASSERT_EQ(band.size(), 1U);
+  ASSERT_EQ(line.size(), 1U);
+  EXPECT_NEAR(band[0].width(), line[0].width(), 0.05);
+  EXPECT_NEAR((band[0].bottom - line[0].top) / (line[0].top - band[0].top), 2.0, 0.01);
 }
 
 TEST(Figure, BoxesShowQuartilesMedianAndWhiskers) {
-  const Folder folder;
-  Figure figure = figure_of(box_series("", {{4, 1, 2, 3, 5}, {}, {1, 1, 1}}));
+  const double none = std::nan("");
+  Series boxes = series({0, 1, 2}, {3, none, 1}, Kind::boxes);
+  boxes.least = {1, none, 0};
+  boxes.low = {2, none, 0.5};
+  boxes.high = {4, none, 1.5};
+  boxes.greatest = {6, none, 2};
+  boxes.style = 2;
+  Figure figure = figure_of(boxes);
   figure.panels[0].categories = {"a", "b", "c"};
-  const Series& boxes = figure.panels[0].series[0];
-  EXPECT_EQ(boxes.least[0], 1.0);
-  EXPECT_EQ(boxes.low[0], 2.0);
-  EXPECT_EQ(boxes.y[0], 3.0);
-  EXPECT_EQ(boxes.high[0], 4.0);
-  EXPECT_EQ(boxes.greatest[0], 5.0);
-  EXPECT_TRUE(std::isnan(boxes.y[1]));
-  const Image image(draw(figure, folder.path()).png);
-  const Patch box = find(image, is_grey, 0.2, 0.4);
-  EXPECT_GT(box.count, 5000);
-  EXPECT_LT(find(image, is_grey, 0.45, 0.65).count, box.count / 20);  // nothing of the empty one but gridlines
+  const std::vector<Mark> drawn = find(svg_of(figure), "polygon", kBlue);
+  ASSERT_EQ(drawn.size(), 2U);  // nothing of the empty one
+  EXPECT_NEAR(drawn[0].height() / drawn[1].height(), 2.0, 0.01);
+  EXPECT_GT(drawn[1].left, drawn[0].right + drawn[0].width());
+}
+
+TEST(Figure, AreasAndLinesEndAtAGap) {
+  const double none = std::nan("");
+  Figure figure = figure_of(series({0, 2, 2, 0, 5, 5, 6, 6}, {0, 0, 2, none, none, 1, 1, 2}, Kind::areas));
+  figure.panels[0].series[0].look = Look{.colour = "#0072b2", .edge = "#000000"};
+  figure.panels[0].series.push_back(series({0, 1, 2, 3, 4}, {0, 0, none, 1, 1}, Kind::line));
+  figure.panels[0].series[1].look = Look{.colour = "#e69f00"};
+  const std::string svg = svg_of(figure);
+  const std::vector<Mark> areas = find(svg, "polygon", kBlue), line = find(svg, "path", kOrange);
+  ASSERT_EQ(areas.size(), 2U);
+  EXPECT_NEAR(areas[0].width() / areas[1].width(), 2.0, 0.01);
+  ASSERT_EQ(line.size(), 1U);
+  EXPECT_NEAR(line[0].width(), 4.0 * areas[1].width(), 0.05);
+  const std::size_t path = svg.find("d='M", svg.find(kOrange));
+  EXPECT_NE(svg.substr(path + 4, svg.find('\'', path + 4) - path).find('M'), std::string::npos) << "pen not lifted";
+}
+
+TEST(Figure, PanelsWithFramesAreWhereTheyShouldBe) {
+  Figure figure = figure_of(series({0, 1}, {0, 1}, Kind::line));
+  figure.height_mm = 60.0;
+  figure.heading = "What it is";
+  Panel& panel = figure.panels[0];
+  panel.frame = Frame{20.0, 10.0, 50.0, 30.0};
+  panel.series[0].style = 2;
+  panel.x_range = {{0.0, 1.0}};
+  panel.y_range = {{1.0, 0.0}};  // upside down
+  panel.notes.push_back({.x = 0.5, .y = 0.5, .text = "here"});
+  panel.rules.push_back({.at = 0.25, .colour = "#e69f00"});
+  const std::string svg = svg_of(figure);
+  const double mm = 96.0 / 25.4;
+  const std::vector<Mark> line = find(svg, "path", kBlue), rule = find(svg, "path", kOrange);
+  ASSERT_EQ(line.size(), 1U);
+  ASSERT_EQ(rule.size(), 1U);
+  EXPECT_NEAR(line[0].left, 20.0 * mm, 0.6);
+  EXPECT_NEAR(line[0].right, 70.0 * mm, 0.6);
+  EXPECT_NEAR(line[0].top, 10.0 * mm, 0.6);
+  EXPECT_NEAR(line[0].bottom, 40.0 * mm, 0.6);
+  EXPECT_NEAR(rule[0].left, 32.5 * mm, 0.6);
+  EXPECT_EQ(rule[0].left, rule[0].right);
+  EXPECT_NEAR(rule[0].height(), line[0].height(), 0.1);
+  for (const char* text : {">What it is<", ">here<"}) EXPECT_NE(svg.find(text), std::string::npos) << text;
+}
+
+TEST(Figure, PngHasItsSizeAndTellsItsResolution) {
+  const std::string png = png_of(figure_of(series({1, 2}, {1, 2}, Kind::line)));
+  EXPECT_EQ(size_of(png)[0], 1063U);  // 90 mm at 300 dots an inch
+  const std::size_t chunk = png.find("pHYs");
+  ASSERT_NE(chunk, std::string::npos);
+  EXPECT_EQ(png.substr(chunk + 4, 13),
+            std::string("\0\0\x2E\x23\0\0\x2E\x23\1\x78\xA5\x3F\x76", 13));  // 11811 in a metre
 }
 
 TEST(Figure, SpheresAndPathsAreDrawnInSpace) {
   const Folder folder;
   Figure figure = in_space();
-  const Patch without = find(Image(draw(figure, folder.path()).png), is_blue);
-  const Colour bluish = [](const Image::Pixel& p) { return p.blue > p.red + 20; };
-  EXPECT_EQ(find(Image(draw(figure, folder.path()).png), bluish).count, 0) << without.count;
+  const std::size_t without = read(draw(figure, folder.path()).svg).size();
   figure.panels[0].spheres = {{4, 2, 2, 1.0, 5, 2, 2}, {2, 6, 2, 0.5, 2, 6, 2}};
   const Drawn drawn = draw(figure, folder.path());
-  const Image image(drawn.png);
-  EXPECT_GT(find(image, bluish).count, 2000);
-  EXPECT_GT(find(image, is_black).count, 1000);
+  const std::string svg = read(drawn.svg);
+  const auto polygons = std::count(svg.begin(), svg.end(), 'p');
+  EXPECT_GT(polygons, 100);  // their faces
+  EXPECT_GT(svg.size(), without + 10'000U);
+  EXPECT_FALSE(find(svg, "path", kBlack).empty());
   EXPECT_NE(read(drawn.data).find("4 2 2 1 5 2 2\n2 6 2 0.5 NaN NaN NaN\n"), std::string::npos);  // one stands still
-  EXPECT_LT(std::filesystem::file_size(drawn.svg), 400'000U);
+  EXPECT_LT(svg.size(), 400'000U);
+}
+
+TEST(Figure, ElementsOfAPageHaveIdsOfTheirOwn) {
+  const Folder folder;
+  const Drawn drawn = draw(figure_of(series({1, 2}, {1, 2}, Kind::points)), folder.path());
+  const std::string svg = svg_element(drawn.svg, "x-");
+  EXPECT_TRUE(svg.starts_with("<svg") && svg.ends_with("</svg>"));
+  EXPECT_NE(svg.find("id='x-gpPt"), std::string::npos);
+  EXPECT_NE(svg.find("href='#x-gpPt"), std::string::npos);
+  EXPECT_EQ(svg.find("'#gpPt"), std::string::npos);
+  const auto refusal = [](const std::filesystem::path& file) -> std::string {
+    try {
+      (void)svg_element(file, "x-");
+    } catch (const std::runtime_error& e) {
+      return e.what();
+    }
+    return "read";
+  };
+  const std::filesystem::path missing = folder.path() / "missing.svg", other = folder.path() / "other.svg";
+  std::ofstream(other) << "no picture";
+  EXPECT_EQ(refusal(missing), "cannot read the figure " + missing.string());
+  EXPECT_EQ(refusal(other), other.string() + " is no SVG");
 }
 
 TEST(Figure, LabelsAreTextAsGiven) {
@@ -362,7 +410,7 @@ TEST(Figure, SaysThatGnuplotIsMissing) {
   const Folder folder;
   const Path path(folder.path());
   EXPECT_EQ(failure(folder.path() / "out"),
-            "figure figure13: gnuplot is not installed (Debian: gnuplot-nox; tools/setup.sh installs it)");
+            "figure figure13: gnuplot is not in PATH; figures need it (Debian: apt install gnuplot-nox)");
 }
 
 /// A program of that name in the folder.
@@ -402,4 +450,4 @@ TEST(Figure, SaysWhyGnuplotFailedAndLeavesNoOldPicture) {
 }
 
 }  // namespace
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::figures

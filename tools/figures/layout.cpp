@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "tools/lab/presentation/gnuplot.hpp"
+#include "tools/figures/gnuplot.hpp"
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::figures {
 namespace {
 
 constexpr double kCharacter = 1.9;     // mm, of an average one at 8 pt
@@ -19,30 +19,27 @@ constexpr double kLeastPanel = 56.0;   // mm, width
 
 constexpr int kBarsAlone = 2;  // the style of bars that are a panel's only series
 
-struct Look {
-  const char* colour;
-  const char* dashes;
-  int mark;
-};
-
 // Colours after Okabe and Ito and after Tol, chosen to be told apart by the colour-blind; dark and light ones
 // alternate.
-constexpr std::array<Look, kStyles> kLooks{{{"#000000", "solid", 7},
-                                            {"#e69f00", "(9,4)", 5},
-                                            {"#0072b2", "solid", 9},
-                                            {"#56b4e9", "(3,3)", 13},
-                                            {"#882255", "(12,3,3,3)", 11},
-                                            {"#44aa77", "solid", 6},
-                                            {"#d55e00", "(6,3)", 4},
-                                            {"#332288", "(2,2)", 8},
-                                            {"#cc79a7", "solid", 12},
-                                            {"#117733", "(9,3,2,3,2,3)", 10},
-                                            {"#999933", "(5,2)", 15},
-                                            {"#888888", "(12,4)", 2},
-                                            {"#ddcc77", "(2,4)", 1},
-                                            {"#0044aa", "(1,3)", 3},
-                                            {"#aa3377", "(4,2,1,2)", 14},
-                                            {"#66ccee", "solid", 8}}};
+const Look& numbered_look(int style) {
+  static const std::array<Look, 16> looks{{{"#000000", 1.4, "solid", 7},
+                                           {"#e69f00", 1.4, "(9,4)", 5},
+                                           {"#0072b2", 1.4, "solid", 9},
+                                           {"#56b4e9", 1.4, "(3,3)", 13},
+                                           {"#882255", 1.4, "(12,3,3,3)", 11},
+                                           {"#44aa77", 1.4, "solid", 6},
+                                           {"#d55e00", 1.4, "(6,3)", 4},
+                                           {"#332288", 1.4, "(2,2)", 8},
+                                           {"#cc79a7", 1.4, "solid", 12},
+                                           {"#117733", 1.4, "(9,3,2,3,2,3)", 10},
+                                           {"#999933", 1.4, "(5,2)", 15},
+                                           {"#888888", 1.4, "(12,4)", 2},
+                                           {"#ddcc77", 1.4, "(2,4)", 1},
+                                           {"#0044aa", 1.4, "(1,3)", 3},
+                                           {"#aa3377", 1.4, "(4,2,1,2)", 14},
+                                           {"#66ccee", 1.4, "solid", 8}}};
+  return looks[static_cast<std::size_t>(style) % looks.size()];
+}
 
 [[noreturn]] void refuse(const Figure& figure, const std::string& reason) {
   throw FigureError(fmt::format("figure {}: {}", figure.id, reason));
@@ -78,11 +75,12 @@ bool check_series(const Figure& figure, const Panel& panel, const Series& s) {
   return drawn;
 }
 
-void check_range(const Figure& figure, const std::optional<std::pair<double, double>>& range, bool log) {
+void check_range(const Figure& figure, const std::optional<std::pair<double, double>>& range, bool log, bool falls) {
   if (!range) return;
-  if (!std::isfinite(range->first) || !std::isfinite(range->second) || !(range->first < range->second) ||
-      (log && range->first <= 0.0))
-    refuse(figure, fmt::format("an axis from {} to {}", range->first, range->second));
+  const auto [low, high] = *range;
+  const bool ordered = low < high || (falls && low > high);
+  if (!std::isfinite(low) || !std::isfinite(high) || !ordered || (log && std::min(low, high) <= 0.0))
+    refuse(figure, fmt::format("an axis from {} to {}", low, high));
 }
 
 std::vector<LegendEntry> legend_of(const Figure& figure) {
@@ -93,7 +91,7 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
       const Series& series = panel.series[i];
       const auto same = [&](const LegendEntry& entry) { return entry.label == series.label; };
       if (!series.label.empty() && std::none_of(legend.begin(), legend.end(), same))
-        legend.push_back({series.label, style_of(panel, i), series.kind});
+        legend.push_back({series.label, look_of(panel, i), series.kind});
     }
   }
   return legend;
@@ -110,21 +108,12 @@ bool in_space(const Panel& panel) {
   return !panel.z_label.empty();
 }
 
-int style_of(const Panel& panel, std::size_t series) {
+const Look& look_of(const Panel& panel, std::size_t series) {
   const Series& s = panel.series[series];
-  if (s.style >= 0) return s.style;
+  if (s.look) return *s.look;
+  if (s.style >= 0) return numbered_look(s.style);
   // Black is for lines: many broad bars of it are hard to look at.
-  return s.kind == Kind::bars && panel.series.size() == 1 ? kBarsAlone : static_cast<int>(series);
-}
-
-int line_number(int style) {
-  return 101 + style % kStyles;
-}
-
-std::string style_line(int style) {
-  const Look& look = kLooks[static_cast<std::size_t>(style % kStyles)];
-  return fmt::format("set style line {} lc rgb '{}' lw 1.4 dt {} pt {} ps 0.7\n", line_number(style), look.colour,
-                     look.dashes, look.mark);
+  return numbered_look(s.kind == Kind::bars && panel.series.size() == 1 ? kBarsAlone : static_cast<int>(series));
 }
 
 void check(const Figure& figure) {
@@ -141,10 +130,20 @@ void check(const Figure& figure) {
     for (const Sphere& s : panel.spheres)
       for (const double v : {s.x, s.y, s.z, s.radius, s.to_x, s.to_y, s.to_z})
         if (!std::isfinite(v)) refuse(figure, "a sphere that is nowhere");
-    check_range(figure, panel.x_range, panel.log_x);
-    check_range(figure, panel.y_range, panel.log_y);
-    check_range(figure, panel.z_range, false);
+    check_range(figure, panel.x_range, panel.log_x, false);
+    check_range(figure, panel.y_range, panel.log_y, !in_space(panel));
+    check_range(figure, panel.z_range, false, false);
+    if (panel.frame.has_value() != (figure.height_mm > 0.0) || (panel.frame && in_space(panel)))
+      refuse(figure, "frames are for all panels of a figure that has a height, and for flat ones");
   }
+}
+
+double round_step(double length, double count) {
+  const double least = length / count * (1.0 - 1e-9);
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double part : {1.0, 2.0, 5.0})
+    if (part * power >= least) return part * power;
+  return 10.0 * power;
 }
 
 Layout layout_of(const Figure& figure) {
@@ -173,8 +172,9 @@ Layout layout_of(const Figure& figure) {
     layout.legend_columns = (entries + rows - 1) / rows;  // rows of about the same length
     layout.legend_height = kLegendRow * rows + 2.0;
   }
-  layout.height = layout.rows * layout.panel_height + layout.legend_height;
+  layout.height =
+      (figure.height_mm > 0.0 ? figure.height_mm : layout.rows * layout.panel_height) + layout.legend_height;
   return layout;
 }
 
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::figures

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drawing: the files, and gnuplot run on them.
-#include "tools/lab/presentation/figure.hpp"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,21 +11,31 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
-#include <limits>
+#include <iterator>
+#include <regex>
+#include <sstream>
 #include <system_error>
 
-#include "tools/lab/statistics/statistics.hpp"
+#include "tools/figures/gnuplot.hpp"
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::figures {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kLongestComplaint = 8192;  // bytes kept of what gnuplot says
+constexpr const char* kMissing = "gnuplot is not in PATH; figures need it (Debian: apt install gnuplot-nox)";
 
 [[noreturn]] void refuse(const std::string& id, const std::string& reason) {
   throw FigureError(fmt::format("figure {}: {}", id, reason));
 }
 
-void write(const std::string& id, const std::filesystem::path& file, const std::string& text) {
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void write(const std::string& id, const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();
@@ -81,7 +90,7 @@ std::string complaint(const std::string& said) {
 }
 
 /// Runs gnuplot in a folder. Throws FigureError.
-void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
+void run_gnuplot(const std::string& id, const fs::path& folder) {
   Pipe pipe;
   if (pipe.end(0) < 0) refuse(id, fmt::format("no pipe to gnuplot: {}", std::generic_category().message(errno)));
   // Without the user's own settings, so that the same figure looks the same everywhere.
@@ -102,7 +111,7 @@ void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   const int failure = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) refuse(id, "gnuplot is not installed (Debian: gnuplot-nox; tools/setup.sh installs it)");
+  if (failure == ENOENT) throw GnuplotMissing(fmt::format("figure {}: {}", id, kMissing));
   if (failure != 0) refuse(id, fmt::format("gnuplot cannot be run: {}", std::generic_category().message(failure)));
   pipe.close_end(1);
   const std::string said = read_all(pipe.end(0));
@@ -113,41 +122,86 @@ void run_gnuplot(const std::string& id, const std::filesystem::path& folder) {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) refuse(id, fmt::format("gnuplot failed: {}", complaint(said)));
 }
 
+/// Tells a PNG's resolution, which gnuplot leaves out: the chunk pHYs of 300 dots an inch, behind the header.
+void tell_resolution(const std::string& id, const fs::path& png) {
+  static constexpr std::size_t kHeader = 33;  // the signature and the chunk IHDR
+  static const std::string chunk("\0\0\0\x09pHYs\0\0\x2e\x23\0\0\x2e\x23\1\x78\xa5\x3f\x76", 21);
+  std::string bytes = read(png);
+  if (bytes.starts_with("\x89PNG") && bytes.size() > kHeader) write(id, png, bytes.insert(kHeader, chunk));
+}
+
+Drawn draw_as(const Figure& figure, const fs::path& folder, const std::string& formats) {
+  const std::string script = gnuplot_script(figure, formats), data = gnuplot_data(figure);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) refuse(figure.id, fmt::format("cannot make {}: {}", folder.string(), error.message()));
+  const auto file = [&](const std::string& ending) { return folder / (figure.id + '.' + ending); };
+  write(figure.id, file("dat"), data);
+  write(figure.id, file("gp"), script);
+  // A picture of before must not pass for one of now.
+  for (const char* picture : {"png", "svg"}) fs::remove(file(picture), error);
+  run_gnuplot(figure.id, folder);
+  std::istringstream endings(formats);
+  for (std::string ending; endings >> ending;)
+    if (fs::file_size(file(ending), error) == 0 || error)
+      refuse(figure.id, fmt::format("gnuplot has not written {}", file(ending).string()));
+  if (fs::exists(file("png"), error)) tell_resolution(figure.id, file("png"));
+  return {file("gp"), file("dat"), file("png"), file("svg")};
+}
+
+/// A folder that goes with its owner.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "jink-figure-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw FigureError(fmt::format("cannot make {}: {}", name, std::generic_category().message(errno)));
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
 }  // namespace
 
-Series box_series(std::string label, const std::vector<std::vector<double>>& samples) {
-  Series series;
-  series.label = std::move(label);
-  series.kind = Kind::boxes;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::vector<double> sorted = samples[i];
-    std::sort(sorted.begin(), sorted.end());
-    series.x.push_back(static_cast<double>(i));
-    series.least.push_back(statistics::quantile(sorted, 0.0));
-    series.low.push_back(statistics::quantile(sorted, 0.25));
-    series.y.push_back(statistics::quantile(sorted, 0.5));
-    series.high.push_back(statistics::quantile(sorted, 0.75));
-    series.greatest.push_back(statistics::quantile(sorted, 1.0));
-  }
-  return series;
+void require_gnuplot() {
+  const char* const path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe)
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / "gnuplot").c_str(), X_OK) == 0) return;
+  throw GnuplotMissing(kMissing);
 }
 
-Drawn draw(const Figure& figure, const std::filesystem::path& folder) {
-  const std::string script = gnuplot_script(figure), data = gnuplot_data(figure);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) refuse(figure.id, fmt::format("cannot make {}: {}", folder.string(), error.message()));
-  const auto file = [&](const char* ending) { return folder / (figure.id + ending); };
-  Drawn drawn{file(".gp"), file(".dat"), file(".png"), file(".svg")};
-  write(figure.id, drawn.data, data);
-  write(figure.id, drawn.script, script);
-  // A picture of before must not pass for one of now.
-  for (const std::filesystem::path& picture : {drawn.png, drawn.svg}) std::filesystem::remove(picture, error);
-  run_gnuplot(figure.id, folder);
-  for (const std::filesystem::path& picture : {drawn.png, drawn.svg})
-    if (std::filesystem::file_size(picture, error) == 0 || error)
-      refuse(figure.id, fmt::format("gnuplot has not written {}", picture.string()));
-  return drawn;
+Drawn draw(const Figure& figure, const fs::path& folder) {
+  return draw_as(figure, folder, "png svg");
 }
 
-}  // namespace jink::tools::lab::presentation
+std::string png_of(const Figure& figure) {
+  const ScratchFolder folder;
+  return read(draw_as(figure, folder.path(), "png").png);
+}
+
+std::string svg_of(const Figure& figure) {
+  const ScratchFolder folder;
+  return svg_element(draw_as(figure, folder.path(), "svg").svg, figure.id + '-');
+}
+
+std::string svg_element(const fs::path& file, const std::string& prefix) {
+  const std::string text = read(file);
+  const std::size_t begin = text.find("<svg"), end = text.rfind("</svg>");
+  if (text.empty()) throw std::runtime_error(fmt::format("cannot read the figure {}", file.string()));
+  if (begin == std::string::npos || end == std::string::npos || end < begin)
+    throw std::runtime_error(fmt::format("{} is no SVG", file.string()));
+  static const std::regex mark(R"(( id=['"]|href=['"]#|url\(#))");
+  return std::regex_replace(text.substr(begin, end + 6 - begin), mark, "$1" + prefix);
+}
+
+}  // namespace jink::tools::figures

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/lab/presentation/statistics.hpp"
+#include "tools/lab/statistics/ranks.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -11,15 +11,14 @@
 #include <stdexcept>
 #include <string>
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::lab::statistics {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-void check_share(double value, const char* name) {
-  if (!(value > 0.0 && value < 1.0))
-    throw std::invalid_argument(std::string(name) + " has to be between 0 and 1, not " + std::to_string(value));
+void check_alpha(double alpha) {
+  if (!(alpha > 0.0 && alpha < 1.0))
+    throw std::invalid_argument("alpha has to be between 0 and 1, not " + std::to_string(alpha));
 }
 
 void check_shape(const Scores& table) {
@@ -42,7 +41,7 @@ struct Sums {
 };
 
 Sums sums_of(const Scores& ranks, double alpha) {
-  check_share(alpha, "alpha");
+  check_alpha(alpha);
   if (ranks.size() < 2 || ranks.front().size() < 2)
     throw std::invalid_argument("a comparison by ranks needs at least 2 algorithms and 2 scenarios");
   check_shape(ranks);
@@ -164,40 +163,4 @@ std::vector<double> holm(std::span<const double> p) {
   return adjusted;
 }
 
-double mean(std::span<const double> values) {
-  if (values.empty()) return kNan;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double standard_deviation(std::span<const double> values) {
-  if (values.size() < 2) return kNan;
-  const double middle = mean(values);
-  double squares = 0.0;
-  for (const double v : values) squares += (v - middle) * (v - middle);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
-Summary summary(std::span<const double> values, double level) {
-  check_share(level, "the level of an interval");
-  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
-    throw std::invalid_argument("a sample has a value that is not finite");
-  Summary result{static_cast<int>(values.size()), kNan, kNan, mean(values),
-                 standard_deviation(values),      kNan, kNan, kNan};
-  if (values.empty()) return result;
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  result.least = sorted.front();
-  result.greatest = sorted.back();
-  result.median = statistics::quantile(sorted, 0.5);
-  double half = kInfinity;
-  if (values.size() > 1) {
-    const double n = static_cast<double>(values.size());
-    const boost::math::students_t t(n - 1.0);
-    half = boost::math::quantile(boost::math::complement(t, (1.0 - level) / 2.0)) * result.deviation / std::sqrt(n);
-  }
-  result.low = result.mean - half;
-  result.high = result.mean + half;
-  return result;
-}
-
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::lab::statistics

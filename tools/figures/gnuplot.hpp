@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a figure's script is made of: styles, the places of panels, text. Internal to the presentation.
+// What a figure's script is made of: styles, the places of panels, text. Internal to the figures.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tools/lab/presentation/figure.hpp"
+#include "tools/figures/figure.hpp"
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::figures {
 
 /// Text as gnuplot takes it: 'in single quotes', on one line.
 [[nodiscard]] std::string in_quotes(std::string_view text);
@@ -16,7 +16,7 @@ namespace jink::tools::lab::presentation {
 /// An entry of the legend, which all panels share.
 struct LegendEntry {
   std::string label;
-  int style = 0;
+  Look look;
   Kind kind = Kind::line;
 };
 
@@ -36,16 +36,13 @@ struct Layout {
 /// Throws FigureError, as gnuplot_script() says.
 void check(const Figure& figure);
 
-/// The style of a panel's series.
-[[nodiscard]] int style_of(const Panel& panel, std::size_t series);
+/// How a panel's series looks. Those that are chosen by number have colours of different lightness, with dashes and
+/// marks of their own, so that neighbours differ without colour too; they repeat after 16.
+[[nodiscard]] const Look& look_of(const Panel& panel, std::size_t series);
 
-/// `set style line 101 ...`: colours of different lightness, with dashes and marks of their own, so that neighbours
-/// differ without colour too. Repeats after kStyles.
-inline constexpr int kStyles = 16;
-[[nodiscard]] std::string style_line(int style);
-/// The number of the line style that style_line() sets.
-[[nodiscard]] int line_number(int style);
+/// The script for these formats alone: "png svg".
+[[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& formats);
 
 [[nodiscard]] bool in_space(const Panel& panel);
 
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::figures

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The statistics of the study: several algorithms compared over several scenarios by ranks, and samples summed up.
+// Several algorithms compared over several scenarios by ranks.
 // Sources: Friedman (1937); Iman and Davenport (1980), Commun. Stat. A9, p. 571; Conover, Practical Nonparametric
 // Statistics (3rd ed. 1999), section 5.8, for ties and for Fisher's LSD on rank sums; Holm (1979), Scand. J. Stat. 6,
 // p. 65. Pure functions, safe from any thread.
@@ -8,13 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/lab/statistics/statistics.hpp"  // quantile, wilson
-
-namespace jink::tools::lab::presentation {
-
-using statistics::Proportion;
-using statistics::quantile;
-using statistics::wilson;
+namespace jink::tools::lab::statistics {
 
 /// A row for each algorithm, a column for each scenario.
 using Scores = std::vector<std::vector<double>>;
@@ -72,23 +66,4 @@ struct Lsd {
 /// less than the one before and at most 1.
 [[nodiscard]] std::vector<double> holm(std::span<const double> p);
 
-/// NaN without values.
-[[nodiscard]] double mean(std::span<const double> values);
-/// The sample standard deviation, n - 1 below; NaN for fewer than two values.
-[[nodiscard]] double standard_deviation(std::span<const double> values);
-
-/// A sample in brief.
-struct Summary {
-  int count = 0;
-  double least = 0.0, greatest = 0.0;
-  double mean = 0.0;
-  double deviation = 0.0;  ///< standard_deviation()
-  double median = 0.0;
-  double low = 0.0, high = 0.0;  ///< the interval of the mean (Student); -inf and inf for a single value
-};
-
-/// All NaN without values. A single value has no deviation (NaN) and says nothing of the mean. Throws
-/// std::invalid_argument for a value that is not finite, or a level outside (0, 1).
-[[nodiscard]] Summary summary(std::span<const double> values, double level = 0.95);
-
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::lab::statistics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A figure as gnuplot's script and data.
-#include "tools/lab/presentation/gnuplot.hpp"
+#include "tools/figures/gnuplot.hpp"
 
 #include <fmt/format.h>
 
@@ -9,16 +9,39 @@
 #include <limits>
 #include <set>
 
-namespace jink::tools::lab::presentation {
+namespace jink::tools::figures {
 namespace {
 
-constexpr double kPixelsPerMm = 300.0 / 25.4;  // PNG
+constexpr double kPixelsPerMm = kResolution_dpi / 25.4;  // PNG
 constexpr double kSvgPerMm = 96.0 / 25.4;
 constexpr double kPoint = 8.0;                  // the font's size in print
 constexpr double kBarsWidth = 0.8;              // of the distance between bars' places
 constexpr int kTicksOnFloor = 8, kTicksUp = 4;  // at most, in space
 constexpr double kRoom = 0.03;                  // left and right of curves, of the axis' length
+constexpr double kNames = 5.0;  // mm, from the page's edge to the y axes' names, where panels have frames
 constexpr const char* kSphereColour = "#b9cfe6";
+
+/// The number of the style that styles_of() sets for a panel's series.
+int line_number(std::size_t series) {
+  return 101 + static_cast<int>(series);
+}
+
+std::string style_line(int number, const Look& look) {
+  return fmt::format("set style line {} lc rgb '{}' lw {} dt {} pt {} ps {}\n", number, look.colour, look.width,
+                     look.dashes, look.mark, look.mark_size);
+}
+
+std::string styles_of(const Panel& panel) {
+  std::string text;
+  for (std::size_t i = 0; i < panel.series.size(); ++i) text += style_line(line_number(i), look_of(panel, i));
+  return text;
+}
+
+std::string areas_plot(const Look& look) {
+  const std::string fill = look.opacity < 1.0 ? fmt::format("transparent solid {:g}", look.opacity) : "solid 1.0";
+  return look.edge.empty() ? fmt::format("fs {} noborder", fill)
+                           : fmt::format("fs {} border lc rgb '{}'", fill, look.edge);
+}
 
 std::string value(double v) {
   return std::isnan(v) ? "NaN" : fmt::format("{}", v);
@@ -31,6 +54,19 @@ std::string row(const std::vector<const std::vector<double>*>& columns, std::siz
     text += column->empty() ? "NaN" : value((*column)[i]);
   }
   return text + '\n';
+}
+
+/// A blank line ends a line or an outline, another begins behind it; two of them would end the block.
+std::string rows(const Series& s, bool in_space) {
+  const bool gaps = s.kind == Kind::line || s.kind == Kind::areas;
+  std::string text;
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    if (gaps && std::isnan(s.y[i])) continue;
+    if (gaps && !text.empty() && std::isnan(s.y[i - 1])) text += '\n';
+    text += in_space ? row({&s.x, &s.y, &s.z}, i) : row({&s.x, &s.y, &s.low, &s.high, &s.least, &s.greatest}, i);
+  }
+  if (text.empty()) text = in_space ? "NaN NaN NaN\n" : "NaN NaN NaN NaN NaN NaN\n";  // keeps the block's number
+  return text;
 }
 
 /// The smallest distance between two places on x; 1 for fewer than two.
@@ -60,7 +96,7 @@ Slot slot(const Panel& panel, std::size_t series) {
 /// The plots of a flat panel's series, each without a title: the legend is drawn apart.
 std::vector<std::string> flat_plots(const Panel& panel, std::size_t i, int index) {
   const Series& s = panel.series[i];
-  const int ls = line_number(style_of(panel, i));
+  const int ls = line_number(i);
   const std::string data = fmt::format("data index {} using ", index);
   std::vector<std::string> plots;
   const Slot place = slot(panel, i);
@@ -90,8 +126,8 @@ std::vector<std::string> flat_plots(const Panel& panel, std::size_t i, int index
     case Kind::points:
       plots.push_back(data + fmt::format("1:2 with points ls {}", ls));
       break;
-    case Kind::steps:
-      plots.push_back(data + fmt::format("1:2 with steps ls {}", ls));
+    case Kind::areas:
+      plots.push_back(data + fmt::format("1:2 with filledcurves closed ls {} {}", ls, areas_plot(look_of(panel, i))));
       break;
   }
   return plots;
@@ -106,7 +142,7 @@ std::string interval_plot(const Panel& panel, std::size_t i, int index) {
         place.offset, 0.4 * place.width);
   }
   return fmt::format("data index {} using 1:3:(0):($4-$3) with vectors nohead ls {} dt solid lw 1", index,
-                     line_number(style_of(panel, i)));
+                     line_number(i));
 }
 
 bool has_intervals(const Series& s) {
@@ -172,8 +208,9 @@ std::string x_ticks(const Panel& panel, double panel_width) {
   std::vector<std::string> ticks;
   std::size_t longest = 0;
   for (std::size_t i = 0; i < panel.categories.size(); ++i) {
-    ticks.push_back(fmt::format("{} {}", in_quotes(panel.categories[i]), i));
-    longest = std::max(longest, panel.categories[i].size());
+    const std::string name = panel.x_numbers ? panel.categories[i] : "";
+    ticks.push_back(fmt::format("{} {}", in_quotes(name), i));
+    longest = std::max(longest, name.size());
   }
   for (const double t : panel.ticks) ticks.push_back(fmt::format("'{0:g}' {0}", t));
   if (ticks.empty()) return "set xtics nomirror auto norotate autojustify; unset bmargin\n";
@@ -185,13 +222,64 @@ std::string x_ticks(const Panel& panel, double panel_width) {
                      fmt::join(ticks, ", "), turned ? fmt::format("set bmargin {:.1f}", lines) : "unset bmargin");
 }
 
-std::string flat_panel(const Panel& panel, double panel_width, int& index) {
-  std::string text =
-      "set border 3 lc rgb '#404040' lw 0.8\nset grid ytics lc rgb '#d8d8d8' lw 0.6 dt solid; "
-      "set rmargin 3; set ytics auto\n";
+/// Where the axes of a panel with a frame are.
+std::string margins(const Frame& frame, const Layout& layout) {
+  const auto x = [&](double mm) { return mm / layout.width; };
+  const auto y = [&](double mm) { return 1.0 - mm / layout.height; };
+  return fmt::format(
+      "set lmargin at screen {:.5f}; set rmargin at screen {:.5f}; set tmargin at screen {:.5f}; set bmargin at screen "
+      "{:.5f}\n",
+      x(frame.left), x(frame.left + frame.width), y(frame.top), y(frame.top + frame.height));
+}
+
+/// Rules and notes.
+std::string marks(const Panel& panel, const Layout& layout) {
+  std::string text;
+  for (const Rule& rule : panel.rules) {
+    const std::string at = value(rule.at);
+    text += fmt::format(fmt::runtime(rule.upright ? "set arrow from {0},graph 0 to {0},graph 1"
+                                                  : "set arrow from graph 0,first {0} to graph 1,first {0}"),
+                        at);
+    text += fmt::format(" nohead lc rgb '#66{}' lw 0.8 dt {} back\n", rule.colour.substr(1),
+                        rule.dashed ? "(12,12)" : "solid");
+  }
+  if (panel.frame)  // in line with those of the other panels
+    text += fmt::format("set ylabel ''; set label {} at screen {:.5f},graph 0.5 center rotate\n",
+                        in_quotes(panel.y_label), kNames / layout.width);
+  for (const Note& note : panel.notes) {
+    const char* side = note.side == Note::Side::left ? "left" : note.side == Note::Side::right ? "right" : "center";
+    text +=
+        fmt::format("set label {} at {},{} {} offset screen 0,{:.5f} tc rgb '{}' font small front\n",
+                    in_quotes(note.text), value(note.x), value(note.y), side, note.above / layout.height, note.colour);
+  }
+  return text;
+}
+
+/// What stands above all panels.
+std::string headings(const Figure& figure, const Layout& layout) {
+  if (figure.height_mm <= 0.0) return "";
+  const double left = figure.panels.front().frame->left / layout.width;
+  const auto y = [&](double mm) { return 1.0 - mm / layout.height; };
+  return fmt::format(
+      "set label {} at screen {:.5f},{:.5f} left font large\nset label {} at screen {:.5f},{:.5f} left\n"
+      "set label {} at screen {:.5f},{:.5f} right\n",
+      in_quotes(figure.heading), left, y(5.0), in_quotes(figure.subheading), left, y(10.0), in_quotes(figure.remark),
+      1.0 - 4.0 / layout.width, y(5.0));
+}
+
+std::string flat_panel(const Panel& panel, const Layout& layout, int& index) {
+  const double panel_width = panel.frame ? panel.frame->width : layout.panel_width;
+  std::string text = fmt::format(
+      "set border {} lc rgb '#404040' lw 0.8\nset grid {}ytics lt 1 lc rgb '#d8d8d8' lw 0.6 dt solid; set rmargin 3; "
+      "set "
+      "ytics {}\n",
+      panel.frame ? 15 : 3, panel.frame ? "xtics " : "", panel.y_step > 0.0 ? value(panel.y_step) : "auto");
+  text += marks(panel, layout);
   text += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
   text += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   text += x_ticks(panel, panel_width) + flat_ranges(panel);
+  if (panel.frame) text += margins(*panel.frame, layout);
+  text += panel.x_numbers ? "set format x '%.10g'\n" : "set format x ''\n";
   std::vector<std::string> plots;
   for (std::size_t i = 0; i < panel.series.size(); ++i, ++index) {
     // Marks lie over their intervals, and those of bars over the bars.
@@ -200,7 +288,7 @@ std::string flat_panel(const Panel& panel, double panel_width, int& index) {
     for (std::string& plot : flat_plots(panel, i, index)) plots.push_back(std::move(plot));
     if (intervals && bars) plots.push_back(interval_plot(panel, i, index));
   }
-  return text + fmt::format("plot {}\n", fmt::join(plots, ", \\\n     "));
+  return text + fmt::format("plot {}\nunset arrow; unset label\n", fmt::join(plots, ", \\\n     "));
 }
 
 std::string space_ranges(const Panel& panel, double& floor) {
@@ -253,7 +341,7 @@ std::string space_panel(const Panel& panel, int& index) {
   }
   for (std::size_t i = 0; i < panel.series.size(); ++i, ++index) {
     const Series& s = panel.series[i];
-    const int ls = line_number(style_of(panel, i));
+    const int ls = line_number(i);
     const char* how = s.kind == Kind::line ? "lines" : s.kind == Kind::points ? "points" : "linespoints";
     if (s.kind != Kind::points)
       shadows.push_back(
@@ -275,26 +363,30 @@ std::string legend_strip(const Layout& layout) {
   if (layout.legend.empty()) return "";
   // The first entry is a curve, out of sight: gnuplot draws no legend where nothing is plotted.
   std::vector<std::string> entries;
+  std::string styles;
   for (const LegendEntry& entry : layout.legend) {
-    const int ls = line_number(entry.style);
+    const int ls = line_number(entries.size());
+    styles += style_line(ls, entry.look);
     const char* with = entry.kind == Kind::points        ? "points ls {0}"
                        : entry.kind == Kind::line_points ? "linespoints ls {0}"
                        : entry.kind == Kind::bars        ? "boxes ls {0} dt solid fs solid 0.8 border lc rgb 'black'"
                        : entry.kind == Kind::boxes       ? "boxes ls {0} dt solid fs solid 0.35 border lc rgb 'black'"
+                       : entry.kind == Kind::areas       ? "boxes ls {0} "
                                                          : "lines ls {0}";
-    entries.push_back(fmt::format("{} with {} title {}", entries.empty() ? "-1" : "keyentry",
-                                  fmt::format(fmt::runtime(with), ls), in_quotes(entry.label)));
+    entries.push_back(fmt::format("{} with {}{} title {}", entries.empty() ? "-1" : "keyentry",
+                                  fmt::format(fmt::runtime(with), ls),
+                                  entry.kind == Kind::areas ? areas_plot(entry.look) : "", in_quotes(entry.label)));
   }
   return fmt::format(
       "\n# The legend.\nset origin 0,0; set size 1,{:.5f}\nset lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0\n"
       "unset title; unset xlabel; unset ylabel; unset border; unset tics; unset grid; unset logscale\n"
       "set xrange [0:1]; set yrange [0:1]\nset key center horizontal maxcols {} reverse Left samplen 3 spacing 1.1 "
       "width 2\n"
-      "plot {}\n",
-      layout.legend_height / layout.height, layout.legend_columns, fmt::join(entries, ", \\\n     "));
+      "{}plot {}\n",
+      layout.legend_height / layout.height, layout.legend_columns, styles, fmt::join(entries, ", \\\n     "));
 }
 
-std::string head(const Figure& figure, const Layout& layout) {
+std::string head(const Figure& figure, const Layout& layout, const std::string& formats) {
   std::string title = figure.title;
   std::replace(title.begin(), title.end(), '\n', ' ');
   std::string text = fmt::format(
@@ -302,20 +394,18 @@ std::string head(const Figure& figure, const Layout& layout) {
       "again.\n"
       "data = '{0}.dat'\nset encoding utf8\nset datafile missing 'NaN'\nset format '%.10g'\n",
       figure.id, title);
-  std::set<int> styles;
-  for (const Panel& panel : figure.panels)
-    for (std::size_t i = 0; i < panel.series.size(); ++i) styles.insert(style_of(panel, i) % kStyles);
-  for (const int style : styles) text += style_line(style);
-  const double scale = 300.0 / 96.0;  // the terminal takes a point for 1/72 inch at 96 dots an inch
+  const double scale = kResolution_dpi / 96.0;  // the terminal takes a point for 1/72 inch at 96 dots an inch
   text += fmt::format(
-      "do for [form in 'png svg'] {{\n"
+      "do for [form in '{}'] {{\n"
       "if (form eq 'png') {{ set terminal pngcairo noenhanced size {:.0f},{:.0f} font 'DejaVu Sans,{:g}' fontscale "
       "{:.4f} "
       "linewidth {:.3f} pointscale {:.3f} }} \\\n"
       "else {{ set terminal svg noenhanced size {:.0f},{:.0f} dynamic font 'DejaVu Sans,{:.2f}' linewidth 1 background "
-      "'white' }}\n",
-      layout.width * kPixelsPerMm, layout.height * kPixelsPerMm, kPoint, scale, scale, scale, layout.width * kSvgPerMm,
-      layout.height * kSvgPerMm, kPoint * 96.0 / 72.0);
+      "'white' }}\n"
+      "font(size) = sprintf(',%g', (form eq 'png' ? 1 : 96.0/72) * size)\n"
+      "small = font(6.5); large = 'DejaVu Sans:Bold'.font(10)\n",
+      formats, layout.width * kPixelsPerMm, layout.height * kPixelsPerMm, kPoint, scale, scale, scale,
+      layout.width * kSvgPerMm, layout.height * kSvgPerMm, kPoint * 96.0 / 72.0);
   return text +
          fmt::format(
              "set output '{}.'.form\nset multiplot\n"
@@ -336,20 +426,26 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string gnuplot_script(const Figure& figure) {
+  return gnuplot_script(figure, "png svg");
+}
+
+std::string gnuplot_script(const Figure& figure, const std::string& formats) {
   check(figure);
   const Layout layout = layout_of(figure);
-  std::string text = head(figure, layout);
+  std::string text = head(figure, layout, formats) + headings(figure, layout);
   int index = 0;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     const Panel& panel = figure.panels[p];
     const int across = static_cast<int>(p) % layout.columns, down = static_cast<int>(p) / layout.columns;
     const double bottom = layout.legend_height + layout.panel_height * (layout.rows - 1 - down);
-    text += fmt::format("\nset origin {:.5f},{:.5f}; set size {:.5f},{:.5f}; unset key\n",
-                        across / static_cast<double>(layout.columns), bottom / layout.height, 1.0 / layout.columns,
-                        layout.panel_height / layout.height);
+    text += "\nunset key\n" + styles_of(panel);
+    if (!panel.frame)
+      text += fmt::format("set origin {:.5f},{:.5f}; set size {:.5f},{:.5f}\n",
+                          across / static_cast<double>(layout.columns), bottom / layout.height, 1.0 / layout.columns,
+                          layout.panel_height / layout.height);
     text += fmt::format("set title {}; set xlabel {}; set ylabel {}\n", in_quotes(panel.title),
                         in_quotes(panel.x_label), in_quotes(panel.y_label));
-    text += in_space(panel) ? space_panel(panel, index) : flat_panel(panel, layout.panel_width, index);
+    text += in_space(panel) ? space_panel(panel, index) : flat_panel(panel, layout, index);
   }
   return text + legend_strip(layout) + "unset multiplot\nset output\n}\n";
 }
@@ -366,11 +462,7 @@ std::string gnuplot_data(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series) {
       begin_block(panel, s.label, in_space(panel) ? "x y z" : "x y low high least greatest");
-      for (std::size_t i = 0; i < s.x.size(); ++i)
-        text +=
-            in_space(panel) ? row({&s.x, &s.y, &s.z}, i) : row({&s.x, &s.y, &s.low, &s.high, &s.least, &s.greatest}, i);
-      if (s.x.empty())
-        text += in_space(panel) ? "NaN NaN NaN\n" : "NaN NaN NaN NaN NaN NaN\n";  // keeps the block's number
+      text += rows(s, in_space(panel));
     }
     if (panel.spheres.empty()) continue;
     begin_block(panel, "spheres", "x y z radius to_x to_y to_z");
@@ -383,4 +475,4 @@ std::string gnuplot_data(const Figure& figure) {
   return text;
 }
 
-}  // namespace jink::tools::lab::presentation
+}  // namespace jink::tools::figures
