@@ -100,7 +100,7 @@ def test(jink, instance):
         check(checks["COM_OF_LOSS_T"]["level"] == "warning" and "5 s" in checks["COM_OF_LOSS_T"]["finding"],
               "five seconds until it acts are not")
 
-        peer = SOURCE / "tests" / "bridge" / "px4_peer.py"
+        peer = SOURCE / "tests" / "bridge" / "mavsdk" / "px4_peer.py"
         with subprocess.Popen([sys.executable, str(peer), "--port", str(14540 + arena.instance), "--system", "99"],
                               stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as second:
             _, checks, _ = doctor(arena, mission, "--seconds", "3")
