@@ -1,12 +1,21 @@
 #!/usr/bin/env bash
 # Configures and builds a preset: tools/build.sh PRESET [TARGET...]. Installs what is missing first.
-# JINK_CMAKE_ARGS adds options, as -DJINK_WARNINGS_AS_ERRORS=ON.
+# JINK_GROUPS says what to build besides the flight program, in tools/setup.sh's groups: "lab test" unless told. What the
+# build folder was configured for before stays. JINK_CMAKE_ARGS adds options, as -DJINK_WARNINGS_AS_ERRORS=ON.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:?a preset: dev, release, asan or tsan}; shift
-tools/setup.sh
+groups=(${JINK_GROUPS-lab test}); [ "$preset" != asan ] || groups+=(sanitizers)
+tools/setup.sh ${groups[@]+"${groups[@]}"}
+options=(); [ -f "build/$preset/CMakeCache.txt" ] || options=(-DJINK_BUILD_LAB=OFF -DJINK_BUILD_TESTS=OFF)
+for group in ${groups[@]+"${groups[@]}"}; do
+  case $group in lab|test|bench) options+=("-DJINK_BUILD_${group^^}=ON") ;; esac
+done
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache} CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER:-ccache}
+# Objects are found by their dependency files, which spares the preprocessor's run before each compilation.
+export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
 # shellcheck disable=SC2086
-cmake --preset "$preset" ${JINK_CMAKE_ARGS:-} >"build-$preset.log" 2>&1 || { cat "build-$preset.log" >&2; rm -f "build-$preset.log"; exit 1; }
+cmake --preset "$preset" ${options[@]+"${options[@]}"} ${JINK_CMAKE_ARGS:-} >"build-$preset.log" 2>&1 ||
+  { cat "build-$preset.log" >&2; rm -f "build-$preset.log"; exit 1; }
 mv "build-$preset.log" "build/$preset/configure.log"
 cmake --build --preset "$preset" ${1:+--target "$@"}

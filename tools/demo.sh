@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, then flies: one process `jink sim` (autopilot on UDP, obstacle tracks on DDS), one
+# Installs what is missing, builds the flight program, then flies: one process `jink sim` (autopilot on UDP, obstacle tracks on DDS), one
 # process `jink fly`. Ends with a summary and the path of the HTML flight report.
 #   tools/demo.sh [SCENARIO [MISSION]]       default: config/scenarios/crossing.yaml, config/missions/sitl.yaml
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scenario=${1:-config/scenarios/crossing.yaml}
 mission=${2:-config/missions/sitl.yaml}
-tools/build.sh release jink
+JINK_GROUPS="" tools/build.sh release jink
 jink=build/release/jink
 out=out/demo; mkdir -p "$out"
 

@@ -8,8 +8,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 case $seconds in ''|*[!0-9]*|0) echo "fuzz: '$seconds' is not a whole number of seconds above 0" >&2; exit 2 ;; esac
 shift || true
-tools/setup.sh sanitizers
-tools/build.sh asan jink_fuzzers
+JINK_GROUPS="test" tools/build.sh asan jink_fuzzers
 names=("$@"); [ $# -gt 0 ] || names=($(basename -a tests/fuzz/corpus/*))
 for name in "${names[@]}"; do
   [ -x "build/asan/fuzz_$name" ] || { echo "fuzz: there is no fuzzer '$name'" >&2; exit 2; }

@@ -5,10 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}; shift || true
-groups=(test); [ "$preset" != asan ] || groups+=(sanitizers)
-tools/setup.sh "${groups[@]}"
 # shellcheck disable=SC2086
-tools/build.sh "$preset" ${JINK_TARGETS:-}
+JINK_GROUPS="lab test" tools/build.sh "$preset" ${JINK_TARGETS:-}
 if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
 if [ "$preset" = asan ]; then
   # Fast DDS 2.9 deletes the statistics part of its writers through a base of another size.
