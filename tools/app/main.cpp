@@ -27,7 +27,7 @@ int become_laboratory(char** argv) {
 }
 
 /// For --help alone: these commands are the laboratory's.
-cli::Subcommand listed(CLI::App& jink, const char* name, const char* what) {
+cli::Subcommand listed(const cli::Parser& jink, const char* name, const char* what) {
   return {jink.add_subcommand(name, what), [] { return base::kExitUsage; }};
 }
 
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "arena" || command == "study") return become_laboratory(argv);
   try {
-    return cli::run_program(argc, argv, [](CLI::App& jink) -> std::vector<cli::Subcommand> {
+    return cli::run_program(argc, argv, [](const cli::Parser& jink) -> std::vector<cli::Subcommand> {
       return {commands::add_plan(jink),
               commands::add_replay(jink),
               commands::add_sim(jink),

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -46,7 +47,7 @@ std::string why_unwritable(const std::string& file) {
 
 }  // namespace
 
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const auto check = [=](std::string& text) {
     std::uint64_t value = 0;
     const char* const last = text.data() + text.size();
@@ -56,10 +57,10 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
     text = std::to_string(value);
     return std::string();
   };
-  return {check, ""};
+  return check;
 }
 
-CLI::Validator number_in(double least, double most) {
+Validator number_in(double least, double most) {
   const auto check = [=](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -67,15 +68,15 @@ CLI::Validator number_in(double least, double most) {
     return number && value >= least && value <= most ? std::string()
                                                      : fmt::format("Value {} not in range {} to {}", text, least, most);
   };
-  return {check, ""};
+  return check;
 }
 
-CLI::Validator some_name() {
-  return {[](const std::string& text) { return std::string(text.empty() ? "is empty; expected a name" : ""); }, ""};
+Validator some_name() {
+  return [](const std::string& text) { return std::string(text.empty() ? "is empty; expected a name" : ""); };
 }
 
-CLI::Validator writable_file() {
-  return {[](const std::string& text) { return text == "-" ? std::string() : why_unwritable(text); }, ""};
+Validator writable_file() {
+  return [](const std::string& text) { return text == "-" ? std::string() : why_unwritable(text); };
 }
 
 void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
@@ -98,17 +99,16 @@ void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<Name
   }
 }
 
-void CommonOptions::add_to(CLI::App& app) {
-  app.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
-      ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str();
-  app.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
-      ->transform(whole_number(1, kMostThreads));
-  app.add_option("--config", config, "planner parameters (default: config/planner.yaml)")->check(some_name());
-  app.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated")
-      ->allow_extra_args(false);
-  app.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr")
-      ->check(some_name());  // that it can be written is each command's to check: campaigns make its folder first
+void CommonOptions::add_to(const Parser& parser) {
+  parser.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
+      .transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .show_default();
+  parser.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
+      .transform(whole_number(1, kMostThreads));
+  parser.add_option("--config", config, "planner parameters (default: config/planner.yaml)").check(some_name());
+  parser.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated").single_value();
+  parser.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr")
+      .check(some_name());  // that it can be written is each command's to check: campaigns make its folder first
 }
 
 config::Settings CommonOptions::settings() const {

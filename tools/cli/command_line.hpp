@@ -2,14 +2,14 @@
 // What the subcommands share: common options, exit codes, signals, where output goes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <condition_variable>
 #include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <functional>
 #include <mutex>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -17,20 +17,21 @@
 
 #include "config/settings.hpp"
 #include "tools/base/exit_code.hpp"
+#include "tools/cli/parser.hpp"
 
 namespace jink::tools::cli {
 
 using base::UsageError;
 
-/// The value of an option, checked as it is parsed. For CLI::Option::transform: decimal, so that 010 is ten.
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
-/// The same for a number that may have a fraction; NaN is in no range. For CLI::Option::check.
-CLI::Validator number_in(double least, double most);
-/// The name of a file or folder: not empty, as an unset variable of a shell is. For CLI::Option::check.
-CLI::Validator some_name();
+/// The value of an option, checked as it is parsed. For Option::transform: decimal, so that 010 is ten.
+Validator whole_number(std::uint64_t least, std::uint64_t most);
+/// The same for a number that may have a fraction; NaN is in no range. For Option::check.
+Validator number_in(double least, double most);
+/// The name of a file or folder: not empty, as an unset variable of a shell is. For Option::check.
+Validator some_name();
 /// The name of a file that can be written, found out before anything is done; what is there stays as it is. "-" passes
-/// too. For CLI::Option::check.
-CLI::Validator writable_file();
+/// too. For Option::check.
+Validator writable_file();
 
 /// A file that a command reads or writes, and the option or argument that names it; none where `file` is empty.
 struct NamedFile {
@@ -49,7 +50,7 @@ struct CommonOptions {
   std::vector<std::string> overrides;
   std::string json;
 
-  void add_to(CLI::App& app);
+  void add_to(const Parser& parser);
   /// The planner's parameters: the file, then the overrides. Throws config::ConfigError.
   [[nodiscard]] config::Settings settings() const;
   /// `threads`, or the number of cores.
@@ -119,9 +120,9 @@ void end_on_signals();
 /// numbers, and what is printed would go there.
 void open_standard_streams();
 
-/// A subcommand: its options are in `app`; `run` does it and returns the exit code.
+/// A subcommand: its options are in `parser`; `run` does it and returns the exit code.
 struct Subcommand {
-  CLI::App* app;
+  Parser parser;
   std::function<int()> run;
 };
 }  // namespace jink::tools::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cli/program.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
@@ -15,23 +16,22 @@ constexpr const char* kFooter =
     "3 a peer (autopilot, obstacle tracks) did not show up.\n"
     "`jink COMMAND --help` tells more. First flight: tools/demo.sh";
 
-int run(int argc, char** argv, const std::function<std::vector<Subcommand>(CLI::App&)>& add) {
+int run(int argc, char** argv, const std::function<std::vector<Subcommand>(const Parser&)>& add) {
   CLI::App jink("jink plans collision-free paths for a drone among moving obstacles, and flies them.", "jink");
   jink.footer(kFooter);
   jink.set_version_flag("--version", std::string("jink ") + JINK_VERSION);
   jink.require_subcommand(1);
-  const std::vector<Subcommand> commands = add(jink);
+  const std::vector<Subcommand> commands = add(Parser(&jink));
   const auto names = [&] {
     std::string list;
-    for (const Subcommand& c : commands) list += (list.empty() ? "" : ", ") + c.app->get_name();
+    for (const Subcommand& c : commands) list += (list.empty() ? "" : ", ") + c.parser.name();
     return list;
   };
   const auto known = [&](const std::string& name) {
-    return std::any_of(commands.begin(), commands.end(),
-                       [&](const Subcommand& c) { return c.app->get_name() == name; });
+    return std::any_of(commands.begin(), commands.end(), [&](const Subcommand& c) { return c.parser.name() == name; });
   };
   const auto chosen = [&] {
-    return std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.app->parsed(); });
+    return std::find_if(commands.begin(), commands.end(), [](const Subcommand& c) { return c.parser.parsed(); });
   };
   if (argc > 1 && argv[1][0] != '-' && !known(argv[1])) {
     return complain("there is no command '" + std::string(argv[1]) + "'; the commands are " + names());
@@ -42,7 +42,7 @@ int run(int argc, char** argv, const std::function<std::vector<Subcommand>(CLI::
     return jink.exit(success);  // --help, --version
   } catch (const CLI::ParseError& error) {
     const auto command = chosen();  // none where the command line ends before one
-    const std::string name = command == commands.end() ? "" : command->app->get_name() + " ";
+    const std::string name = command == commands.end() ? "" : command->parser.name() + " ";
     return complain(std::string(error.what()) + " (see `jink " + name + "--help`)");
   }
   return chosen()->run();
@@ -57,7 +57,7 @@ int complain(const std::string& message) {
   return base::kExitUsage;
 }
 
-int run_program(int argc, char** argv, const std::function<std::vector<Subcommand>(CLI::App&)>& add) {
+int run_program(int argc, char** argv, const std::function<std::vector<Subcommand>(const Parser&)>& add) {
   open_standard_streams();
   try {
     return run(argc, argv, add);

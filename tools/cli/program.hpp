@@ -16,6 +16,6 @@ int complain(const std::string& message);
 /// Parses the arguments and runs the command that they choose. `add` adds the subcommands to the application.
 /// Config, usage and argument errors end as complain() does, any other std::exception with base::kExitFailed; what is
 /// no std::exception goes through.
-int run_program(int argc, char** argv, const std::function<std::vector<Subcommand>(CLI::App&)>& add);
+int run_program(int argc, char** argv, const std::function<std::vector<Subcommand>(const Parser&)>& add);
 
 }  // namespace jink::tools::cli

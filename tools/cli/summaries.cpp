@@ -2,6 +2,7 @@
 #include "tools/cli/summaries.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // The summary objects of contracts: jink-plan/1 and jink-flight/1, and what people read.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>

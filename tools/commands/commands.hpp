@@ -36,12 +36,12 @@ struct OtherPlanners {
 /// Thrown where a command names a planner that the flight program does not carry: jink-lab is to do it.
 struct NeedsLaboratory {};
 
-cli::Subcommand add_plan(CLI::App& jink, const OtherPlanners* others = nullptr);
-cli::Subcommand add_replay(CLI::App& jink, const OtherPlanners* others = nullptr);
-cli::Subcommand add_sim(CLI::App& jink);
-cli::Subcommand add_fly(CLI::App& jink);
-cli::Subcommand add_doctor(CLI::App& jink);
-cli::Subcommand add_report(CLI::App& jink);
-cli::Subcommand add_export(CLI::App& jink);
+cli::Subcommand add_plan(const cli::Parser& jink, const OtherPlanners* others = nullptr);
+cli::Subcommand add_replay(const cli::Parser& jink, const OtherPlanners* others = nullptr);
+cli::Subcommand add_sim(const cli::Parser& jink);
+cli::Subcommand add_fly(const cli::Parser& jink);
+cli::Subcommand add_doctor(const cli::Parser& jink);
+cli::Subcommand add_report(const cli::Parser& jink);
+cli::Subcommand add_export(const cli::Parser& jink);
 
 }  // namespace jink::tools::commands

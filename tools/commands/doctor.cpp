@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink doctor: what stands in the way of a flight, and what to do about it.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -136,18 +137,17 @@ int run(const DoctorOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_doctor(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
+cli::Subcommand add_doctor(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand(
       "doctor", "check link, rates, health, frames, parameters and tracks before a flight; nothing is commanded");
-  app->footer(
-      "Exit codes: 0 nothing worse than a warning; 1 a fault; 2 bad usage, file or value; 3 a peer is missing.");
+  app.footer("Exit codes: 0 nothing worse than a warning; 1 a fault; 2 bad usage, file or value; 3 a peer is missing.");
   const auto options = std::make_shared<DoctorOptions>();
-  app->add_option("MISSION", options->mission, "mission file")->required();
-  app->add_option("--seconds", options->seconds, "how long to wait for the autopilot, and then to listen; 1 to 600")
-      ->check(cli::number_in(1.0, 600.0))
-      ->capture_default_str();
-  options->common.add_to(*app);
-  app->get_option("--json")->check(cli::writable_file());
+  app.add_option("MISSION", options->mission, "mission file").required();
+  app.add_option("--seconds", options->seconds, "how long to wait for the autopilot, and then to listen; 1 to 600")
+      .check(cli::number_in(1.0, 600.0))
+      .show_default();
+  options->common.add_to(app);
+  app.option("--json").check(cli::writable_file());
   return {app, [options] { return run(*options); }};
 }
 

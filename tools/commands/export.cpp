@@ -33,14 +33,14 @@ int run(const ExportOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_export(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand("export", "write a flight log for other programs");
+cli::Subcommand add_export(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand("export", "write a flight log for other programs");
   const auto options = std::make_shared<ExportOptions>();
-  app->add_option("FLIGHT.jsonl", options->log, "flight log")->required();
-  app->add_option("--mcap", options->mcap,
-                  "an MCAP recording for Foxglove and PlotJuggler (default: beside the log, .mcap)")
-      ->required()
-      ->expected(0, 1);
+  app.add_option("FLIGHT.jsonl", options->log, "flight log").required();
+  app.add_option("--mcap", options->mcap,
+                 "an MCAP recording for Foxglove and PlotJuggler (default: beside the log, .mcap)")
+      .required()
+      .expected(0, 1);
   return {app, [options] { return run(*options); }};
 }
 

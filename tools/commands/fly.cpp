@@ -205,15 +205,15 @@ int run(const FlyOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_fly(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand("fly", "fly a mission against the simulator, PX4 SITL or a vehicle");
+cli::Subcommand add_fly(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand("fly", "fly a mission against the simulator, PX4 SITL or a vehicle");
   const auto options = std::make_shared<FlyOptions>();
-  app->add_option("MISSION", options->mission, "mission file")->required();
-  app->add_option("--log", options->log, "write a flight log (JSON Lines)")->check(cli::writable_file());
-  app->add_option("--report", options->report, "write an HTML flight report at the end; needs --log")
-      ->check(cli::writable_file());
-  options->common.add_to(*app);
-  app->get_option("--json")->check(cli::writable_file());
+  app.add_option("MISSION", options->mission, "mission file").required();
+  app.add_option("--log", options->log, "write a flight log (JSON Lines)").check(cli::writable_file());
+  app.add_option("--report", options->report, "write an HTML flight report at the end; needs --log")
+      .check(cli::writable_file());
+  options->common.add_to(app);
+  app.option("--json").check(cli::writable_file());
   return {app, [options] { return run(*options); }};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink plan: the whole path at once, open loop, in the world as it is known at t = 0.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -180,39 +181,39 @@ int run(PlanOptions options) {
 
 }  // namespace
 
-cli::Subcommand add_plan(CLI::App& jink, const OtherPlanners* others) {
-  CLI::App* app = jink.add_subcommand("plan", "plan a scenario's whole path at once, open loop");
+cli::Subcommand add_plan(const cli::Parser& jink, const OtherPlanners* others) {
+  const cli::Parser app = jink.add_subcommand("plan", "plan a scenario's whole path at once, open loop");
   const auto options = std::make_shared<PlanOptions>();
-  app->add_option("SCENARIO", options->scenario, "scenario file")->required();
-  app->add_option("--mode", options->mode, "horizon: the remaining path at once; paper: one waypoint after the other")
-      ->check(CLI::IsMember({"paper", "horizon"}))
-      ->capture_default_str();
-  CLI::Option* algorithm =
-      app->add_option(
+  app.add_option("SCENARIO", options->scenario, "scenario file").required();
+  app.add_option("--mode", options->mode, "horizon: the remaining path at once; paper: one waypoint after the other")
+      .one_of({"paper", "horizon"})
+      .show_default();
+  cli::Option algorithm =
+      app.add_option(
              "--algorithm", options->algorithm,
              "pmomvo takes --slaves and --sharing, pmomvo-M has M slaves; the others are those it is compared with")
-          ->capture_default_str();
+          .show_default();
   if (others != nullptr) {
     std::vector<std::string> names{kOwnAlgorithm};
     names.insert(names.end(), others->algorithms.begin(), others->algorithms.end());
-    algorithm->check(CLI::IsMember(names));
+    algorithm.one_of(names);
   }
-  app->add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64")->transform(cli::whole_number(1, 64));
-  app->add_option("--sharing", options->sharing, "how often they share, 0 to 1000")
-      ->transform(cli::whole_number(0, 1000));
-  app->add_option("--population", options->population,
-                  "universes of all slaves together, or the population, 1 to 100000")
-      ->transform(cli::whole_number(1, 100000));
-  app->add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")
-      ->transform(cli::whole_number(1, 1000000));
-  app->add_option("--waypoints", options->waypoints,
-                  "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
-      ->transform(cli::whole_number(1, 1000));
-  app->add_option("--deadline-ms", options->deadline_ms,
-                  "stop planning after so many ms of wall time (default: no deadline)")
-      ->check(cli::number_in(0.001, 1e9));
-  options->common.add_to(*app);
-  app->get_option("--json")->check(cli::writable_file());
+  app.add_option("--slaves", options->slaves, "sub-swarms of PMOMVO, 1 to 64").transform(cli::whole_number(1, 64));
+  app.add_option("--sharing", options->sharing, "how often they share, 0 to 1000")
+      .transform(cli::whole_number(0, 1000));
+  app.add_option("--population", options->population,
+                 "universes of all slaves together, or the population, 1 to 100000")
+      .transform(cli::whole_number(1, 100000));
+  app.add_option("--iterations", options->iterations, "iterations of each plan or step, 1 to 1000000")
+      .transform(cli::whole_number(1, 1000000));
+  app.add_option("--waypoints", options->waypoints,
+                 "waypoints: 2 to 1000 in paper mode (start and target included), 1 to 20 in horizon mode")
+      .transform(cli::whole_number(1, 1000));
+  app.add_option("--deadline-ms", options->deadline_ms,
+                 "stop planning after so many ms of wall time (default: no deadline)")
+      .check(cli::number_in(0.001, 1e9));
+  options->common.add_to(app);
+  app.option("--json").check(cli::writable_file());
   return {app, [options, others] {
             if (options->algorithm != kOwnAlgorithm) {
               if (others == nullptr) throw NeedsLaboratory();

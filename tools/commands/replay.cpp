@@ -204,27 +204,27 @@ int run(const ReplayOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_replay(CLI::App& jink, const OtherPlanners* others) {
-  CLI::App* app =
+cli::Subcommand add_replay(const cli::Parser& jink, const OtherPlanners* others) {
+  const cli::Parser app =
       jink.add_subcommand("replay",
                           "fly a scenario closed loop in virtual time, all of its vehicles: bit-identical for the same "
                           "seed, at any thread\n"
                           "count; or, given a "
                           "flight log, make its plans again from what they were made from and say which differ");
   const auto options = std::make_shared<ReplayOptions>();
-  app->add_option("SCENARIO|FLIGHT.jsonl", options->scenario, "scenario file, or flight log of `replay` or `fly`")
-      ->required();
-  app->add_option("--log", options->log, "write a flight log (JSON Lines)")->check(cli::writable_file());
-  app->add_option("--report", options->report, "write an HTML flight report; needs --log")->check(cli::writable_file());
+  app.add_option("SCENARIO|FLIGHT.jsonl", options->scenario, "scenario file, or flight log of `replay` or `fly`")
+      .required();
+  app.add_option("--log", options->log, "write a flight log (JSON Lines)").check(cli::writable_file());
+  app.add_option("--report", options->report, "write an HTML flight report; needs --log").check(cli::writable_file());
   options->others = others;
-  CLI::Option* pilot =
-      app->add_option("--pilot", options->pilot, "planner: jink, or a baseline of `jink arena`")->capture_default_str();
-  if (others != nullptr) pilot->check(CLI::IsMember(others->pilots));
-  options->common.add_to(*app);
-  app->get_option("--json")->check(cli::writable_file());
+  cli::Option pilot =
+      app.add_option("--pilot", options->pilot, "planner: jink, or a baseline of `jink arena`").show_default();
+  if (others != nullptr) pilot.one_of(others->pilots);
+  options->common.add_to(app);
+  app.option("--json").check(cli::writable_file());
   return {app, [options, app, others] {
             if (others == nullptr && options->pilot != kOwnPilot) throw NeedsLaboratory();
-            options->own_seed = app->count("--seed") > 0;
+            options->own_seed = app.count("--seed") > 0;
             return run(*options);
           }};
 }

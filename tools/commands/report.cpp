@@ -77,21 +77,21 @@ int run(const ReportOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_report(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
+cli::Subcommand add_report(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand(
       "report", "make a self-contained HTML page of one or more flight logs, or a figure for print of one");
   const auto options = std::make_shared<ReportOptions>();
-  app->add_option("FLIGHT.jsonl", options->logs, "flight logs; several stand side by side")->required();
-  app->add_option("--out", options->out, "the page (default: beside the log, .html; needed for several logs)")
-      ->check(cli::writable_file());
-  app->add_option("--summary", options->summaries,
-                  "summary object written by --json, shown on top; may be repeated, in the order of the logs")
-      ->allow_extra_args(false);
-  app->add_option("--png", options->png,
-                  "a figure of one flight, 180 mm wide at 300 dpi; then the page is written with --out alone")
-      ->check(cli::writable_file());
-  app->add_option("--at", options->at, "the instant that the figure shows, s of the log (default: least clearance)")
-      ->check(cli::number_in(0.0, 1e9));
+  app.add_option("FLIGHT.jsonl", options->logs, "flight logs; several stand side by side").required();
+  app.add_option("--out", options->out, "the page (default: beside the log, .html; needed for several logs)")
+      .check(cli::writable_file());
+  app.add_option("--summary", options->summaries,
+                 "summary object written by --json, shown on top; may be repeated, in the order of the logs")
+      .single_value();
+  app.add_option("--png", options->png,
+                 "a figure of one flight, 180 mm wide at 300 dpi; then the page is written with --out alone")
+      .check(cli::writable_file());
+  app.add_option("--at", options->at, "the instant that the figure shows, s of the log (default: least clearance)")
+      .check(cli::number_in(0.0, 1e9));
   return {app, [options] { return run(*options); }};
 }
 

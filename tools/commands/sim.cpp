@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink sim: the headless simulator. A PX4-style autopilot on UDP, and the obstacles' tracks on DDS, in real time.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -297,46 +298,46 @@ int run(const SimOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_sim(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
+cli::Subcommand add_sim(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand(
       "sim", "simulate a PX4-style vehicle on UDP and the scenario's obstacles on DDS, without a screen");
   const auto options = std::make_shared<SimOptions>();
-  app->add_option("SCENARIO", options->scenario, "scenario file")->required();
-  CLI::Option* speed = app->add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
-                           ->check(cli::number_in(0.5, 20.0))
-                           ->capture_default_str();
-  app->add_flag("--lockstep", options->lockstep,
-                "as fast as possible; but while a vehicle is armed in OFFBOARD, after every 20 ms of simulated time "
-                "wait until its companion has sent a setpoint in them. A companion that does not within 1 s is "
-                "reported and not waited for until it sends again. For companions that answer telemetry (ATTITUDE "
-                "comes at 99 Hz); one that keeps wall-clock time at 50 Hz makes it real time")
-      ->excludes(speed);
-  app->add_option("--clock", options->clock,
-                  "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
-      ->check(CLI::IsMember({"start", "immediate"}))
-      ->capture_default_str();
-  app->add_flag("--no-vehicle", options->no_vehicle,
-                "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
-  app->add_flag("--dds-vehicle", options->dds_vehicle,
-                "the vehicles on PX4's DDS topics too, as its uXRCE-DDS agent has them: fmu/out/"
-                "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
-  app->add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer publishes the obstacles");
-  app->add_option("--domain", options->domain, "DDS domain, 0 to 232")
-      ->transform(cli::whole_number(0, 232))
-      ->capture_default_str();
-  app->add_option("--instance", options->instance,
-                  "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9; further vehicles take N+1 and so on")
-      ->transform(cli::whole_number(0, 9))
-      ->capture_default_str();
-  app->add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
-      ->check(cli::number_in(0.1, 1e6));
-  app->add_option("--boot-clock", options->boot_clock,
-                  "seconds of the autopilot's clock, by which its messages are stamped, in a simulated one, 0.9 to 1.1 "
-                  "(default: 0.987, PX4 SITL's against the wall; 1 with --lockstep)")
-      ->check(cli::number_in(0.9, 1.1));
-  app->add_option("--log", options->log, "write a flight log of the truth (JSON Lines)")->check(cli::writable_file());
-  options->common.add_to(*app);
-  app->get_option("--json")->check(cli::writable_file());
+  app.add_option("SCENARIO", options->scenario, "scenario file").required();
+  cli::Option speed = app.add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
+                          .check(cli::number_in(0.5, 20.0))
+                          .show_default();
+  app.add_flag("--lockstep", options->lockstep,
+               "as fast as possible; but while a vehicle is armed in OFFBOARD, after every 20 ms of simulated time "
+               "wait until its companion has sent a setpoint in them. A companion that does not within 1 s is "
+               "reported and not waited for until it sends again. For companions that answer telemetry (ATTITUDE "
+               "comes at 99 Hz); one that keeps wall-clock time at 50 Hz makes it real time")
+      .excludes(speed);
+  app.add_option("--clock", options->clock,
+                 "start: obstacles stand until the vehicle is at the start in OFFBOARD; immediate")
+      .one_of({"start", "immediate"})
+      .show_default();
+  app.add_flag("--no-vehicle", options->no_vehicle,
+               "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
+  app.add_flag("--dds-vehicle", options->dds_vehicle,
+               "the vehicles on PX4's DDS topics too, as its uXRCE-DDS agent has them: fmu/out/"
+               "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
+  app.add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer publishes the obstacles");
+  app.add_option("--domain", options->domain, "DDS domain, 0 to 232")
+      .transform(cli::whole_number(0, 232))
+      .show_default();
+  app.add_option("--instance", options->instance,
+                 "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9; further vehicles take N+1 and so on")
+      .transform(cli::whole_number(0, 9))
+      .show_default();
+  app.add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
+      .check(cli::number_in(0.1, 1e6));
+  app.add_option("--boot-clock", options->boot_clock,
+                 "seconds of the autopilot's clock, by which its messages are stamped, in a simulated one, 0.9 to 1.1 "
+                 "(default: 0.987, PX4 SITL's against the wall; 1 with --lockstep)")
+      .check(cli::number_in(0.9, 1.1));
+  app.add_option("--log", options->log, "write a flight log of the truth (JSON Lines)").check(cli::writable_file());
+  options->common.add_to(app);
+  app.option("--json").check(cli::writable_file());
   return {app, [options] { return run(*options); }};
 }
 

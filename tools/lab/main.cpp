@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink-lab, the laboratory: what measures. Called by jink, or by hand with the same arguments.
 #include "tools/cli/program.hpp"
+
 #include "tools/commands/commands.hpp"
 #include "tools/lab/algorithms/registry.hpp"
 #include "tools/lab/baselines/registry.hpp"
@@ -26,7 +27,7 @@ commands::OtherPlanners other_planners() {
 
 int main(int argc, char** argv) {
   const commands::OtherPlanners others = other_planners();
-  return cli::run_program(argc, argv, [&](CLI::App& jink) -> std::vector<cli::Subcommand> {
+  return cli::run_program(argc, argv, [&](const cli::Parser& jink) -> std::vector<cli::Subcommand> {
     return {commands::add_plan(jink, &others), commands::add_replay(jink, &others), lab::commands::add_arena(jink),
             lab::commands::add_study(jink)};
   });

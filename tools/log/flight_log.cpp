@@ -2,6 +2,7 @@
 #include "tools/log/flight_log.hpp"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 

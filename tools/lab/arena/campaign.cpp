@@ -2,6 +2,7 @@
 #include "tools/lab/arena/campaign.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <mutex>
 #include <optional>

@@ -2,6 +2,7 @@
 #include "tools/lab/arena/flight_runner.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -2,6 +2,7 @@
 #include "tools/lab/arena/html_page.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

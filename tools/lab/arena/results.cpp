@@ -2,6 +2,7 @@
 #include "tools/lab/arena/results.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <optional>
 

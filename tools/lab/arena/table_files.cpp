@@ -2,6 +2,7 @@
 // The tables as CSV, JSON, Markdown and text.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

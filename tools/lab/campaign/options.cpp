@@ -51,7 +51,7 @@ void require_same(const std::vector<std::string>& differences, const std::string
         fmt::format("--resume: '{}' was begun with other settings: {}", out, fmt::join(differences, "; ")));
 }
 
-void refuse_beside(const CLI::App& app, const char* mode, const std::vector<std::string>& useless) {
+void refuse_beside(const cli::Parser& app, const char* mode, const std::vector<std::string>& useless) {
   if (app.count(mode) == 0) return;
   for (const std::string& name : useless)
     if (app.count(name) > 0) throw cli::UsageError(fmt::format("{}: has no effect beside {}", name, mode));

@@ -42,7 +42,7 @@ void make_folder(const std::filesystem::path& out);
 void require_same(const std::vector<std::string>& differences, const std::string& out);
 
 /// An option without effect beside `mode` is refused with a UsageError.
-void refuse_beside(const CLI::App& app, const char* mode, const std::vector<std::string>& useless);
+void refuse_beside(const cli::Parser& app, const char* mode, const std::vector<std::string>& useless);
 
 /// "3 min 07 s".
 [[nodiscard]] std::string duration(double seconds);

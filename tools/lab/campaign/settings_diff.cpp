@@ -2,6 +2,7 @@
 #include "tools/lab/campaign/settings_diff.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,6 +2,7 @@
 // jink arena: many flights of several pilots through seeded worlds, in virtual time, and what they amount to.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -195,7 +196,7 @@ int run_write(const ArenaOptions& options, const cli::Printer& printer) {
 }
 
 /// An option without effect is refused: a merged campaign has the settings of its parts, a written world needs none.
-void refuse_useless(const CLI::App& app) {
+void refuse_useless(const cli::Parser& app) {
   std::vector<std::string> useless{"--families", "--pilots", "--runs",    "--resume", "--shard", "--oracle",
                                    "--logs",     "--seed",   "--threads", "--config", "--set"};
   const char* const mode = app.count("--merge") > 0 ? "--merge" : "--write";
@@ -218,44 +219,43 @@ int run(const ArenaOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_arena(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
+cli::Subcommand add_arena(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand(
       "arena",
       "fly many seeded worlds closed loop in virtual time, with jink and the baselines, and make tables of it");
   const auto options = std::make_shared<ArenaOptions>();
   const auto names = [](std::span<const std::string_view> all) { return fmt::format("{}", fmt::join(all, ", ")); };
-  app->add_option("--families", options->families,
-                  "families of worlds, A,B or all: " + names(sim::families::world_families()))
-      ->capture_default_str();
-  app->add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(baselines::pilots()))
-      ->capture_default_str();
-  app->add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
-      ->capture_default_str();
-  app->add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
-      ->transform(cli::whole_number(1, campaign::kMostRuns))
-      ->capture_default_str();
-  app->add_option("--out", options->out, "folder for the results")->check(cli::some_name())->capture_default_str();
-  app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
-  app->add_option("--shard", options->shard,
-                  "K/N: fly the K-th of N parts, for several machines; --merge puts them together")
-      ->capture_default_str();
-  app->add_option("--oracle", options->oracle,
-                  "on: ask an independent search, which knows the future, whether worlds in which nobody\n"
-                  "arrived have a way through; those that have none count apart")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
-  app->add_option("--logs", options->logs, "off: failed flights leave their scenario but no log")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
-  app->add_option("--merge", options->merge, "put the results in these folders together into --out")
-      ->expected(1, campaign::kMostShards);
-  app->add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
-      ->expected(2);
-  options->common.add_to(*app);
-  app->get_option("--threads")->description("flights at once, 1 to 256 (default: one for each core)");
-  app->footer(kFooter);
+  app.add_option("--families", options->families,
+                 "families of worlds, A,B or all: " + names(sim::families::world_families()))
+      .show_default();
+  app.add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(baselines::pilots())).show_default();
+  app.add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
+      .show_default();
+  app.add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
+      .transform(cli::whole_number(1, campaign::kMostRuns))
+      .show_default();
+  app.add_option("--out", options->out, "folder for the results").check(cli::some_name()).show_default();
+  app.add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
+  app.add_option("--shard", options->shard,
+                 "K/N: fly the K-th of N parts, for several machines; --merge puts them together")
+      .show_default();
+  app.add_option("--oracle", options->oracle,
+                 "on: ask an independent search, which knows the future, whether worlds in which nobody\n"
+                 "arrived have a way through; those that have none count apart")
+      .one_of({"on", "off"})
+      .show_default();
+  app.add_option("--logs", options->logs, "off: failed flights leave their scenario but no log")
+      .one_of({"on", "off"})
+      .show_default();
+  app.add_option("--merge", options->merge, "put the results in these folders together into --out")
+      .expected(1, campaign::kMostShards);
+  app.add_option("--write", options->write, "FAMILY:SEED FILE: write that world as a scenario file and end")
+      .expected(2, 2);
+  options->common.add_to(app);
+  app.option("--threads").describe("flights at once, 1 to 256 (default: one for each core)");
+  app.footer(kFooter);
   return {app, [options, app] {
-            refuse_useless(*app);
+            refuse_useless(app);
             return run(*options);
           }};
 }

@@ -6,7 +6,7 @@
 
 namespace jink::tools::lab::commands {
 
-cli::Subcommand add_arena(CLI::App& jink);
-cli::Subcommand add_study(CLI::App& jink);
+cli::Subcommand add_arena(const cli::Parser& jink);
+cli::Subcommand add_study(const cli::Parser& jink);
 
 }  // namespace jink::tools::lab::commands

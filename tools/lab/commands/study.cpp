@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink study: the paper's experiments, all of them, and what they amount to.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -147,29 +148,29 @@ int run(const StudyOptions& options) {
 
 }  // namespace
 
-cli::Subcommand add_study(CLI::App& jink) {
-  CLI::App* app = jink.add_subcommand(
+cli::Subcommand add_study(const cli::Parser& jink) {
+  const cli::Parser app = jink.add_subcommand(
       "study", "run the paper's experiments again: every table and figure of its section 5, and harder ones");
   const auto options = std::make_shared<StudyOptions>();
-  app->add_option("--runs", options->runs,
-                  fmt::format("runs of each variant, with seeds of their own (default: {}, or {} with --quick)", kRuns,
-                              kQuickRuns))
-      ->transform(cli::whole_number(1, study::kMostStudyRuns));
-  app->add_flag("--quick", options->quick,
-                "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
-  app->add_option("--out", options->out, "folder for the results")->check(cli::some_name())->capture_default_str();
-  app->add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
-  app->add_option("--shard", options->shard,
-                  "K/N: make the K-th of N parts, for several machines; --merge puts them together")
-      ->capture_default_str();
-  app->add_option("--merge", options->merge, "put the results in these folders together into --out")
-      ->expected(1, campaign::kMostShards);
-  options->common.add_to(*app);
-  app->get_option("--threads")
-      ->description("runs at once, and threads of the planner in timed runs, 1 to 256 (default: one for each core)");
-  app->footer(kFooter);
+  app.add_option("--runs", options->runs,
+                 fmt::format("runs of each variant, with seeds of their own (default: {}, or {} with --quick)", kRuns,
+                             kQuickRuns))
+      .transform(cli::whole_number(1, study::kMostStudyRuns));
+  app.add_flag("--quick", options->quick,
+               "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
+  app.add_option("--out", options->out, "folder for the results").check(cli::some_name()).show_default();
+  app.add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");
+  app.add_option("--shard", options->shard,
+                 "K/N: make the K-th of N parts, for several machines; --merge puts them together")
+      .show_default();
+  app.add_option("--merge", options->merge, "put the results in these folders together into --out")
+      .expected(1, campaign::kMostShards);
+  options->common.add_to(app);
+  app.option("--threads")
+      .describe("runs at once, and threads of the planner in timed runs, 1 to 256 (default: one for each core)");
+  app.footer(kFooter);
   return {app, [options, app] {
-            campaign::refuse_beside(*app, "--merge",
+            campaign::refuse_beside(app, "--merge",
                                     {"--runs", "--quick", "--resume", "--shard", "--seed", "--config", "--set"});
             return run(*options);
           }};

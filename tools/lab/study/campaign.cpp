@@ -2,6 +2,7 @@
 #include "tools/lab/study/campaign.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <map>

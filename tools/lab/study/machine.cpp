@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <stdexcept>

@@ -2,7 +2,7 @@
 // What a study was run on: without it, times say nothing.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace jink::tools::lab::study {

@@ -2,7 +2,9 @@
 #include "tools/lab/study/output_files.hpp"
 
 #include <fmt/format.h>
+
 #include <atomic>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "config/scenario_writer.hpp"

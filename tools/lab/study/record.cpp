@@ -2,6 +2,7 @@
 #include "tools/lab/study/record.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <stdexcept>
 

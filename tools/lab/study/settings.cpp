@@ -2,6 +2,7 @@
 #include "tools/lab/study/settings.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <set>
