@@ -3,6 +3,13 @@
 # rooms that it links and no others: each has an include folder of its own, which holds a link to the room under its
 # full path. tests/check_rooms.py holds the tree to that.
 
+# jink_precompile(NAME targets...): a target whose precompiled headers (precompiled.hpp) others with the same options use.
+function(jink_precompile name)
+  add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE ${ARGN} Eigen3::Eigen jink_options)
+  target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
+endfunction()
+
 # jink_room_headers(VARIABLE): the include folder of the room it is called in.
 function(jink_room_headers variable)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -14,11 +21,12 @@ function(jink_room_headers variable)
   set(${variable} ${include} PARENT_SCOPE)
 endfunction()
 
-# jink_room([LINK targets...] [PRIVATE targets...] [SOURCES generated files...])
+# jink_room([LINK targets...] [PRIVATE targets...] [SOURCES generated files...] [OWN_OPTIONS])
 # Makes the library of the room it is called in, of all *.cpp there: bridge/tracking gives jink::bridge::tracking.
-# LINK: what its headers use as well. PRIVATE: what its sources alone use.
+# LINK: what its headers use as well. PRIVATE: what its sources alone use. OWN_OPTIONS: it has compile options that the
+# precompiled headers were not made with.
 function(jink_room)
-  cmake_parse_arguments(R "" "" "LINK;PRIVATE;SOURCES" ${ARGN})
+  cmake_parse_arguments(R "OWN_OPTIONS" "" "LINK;PRIVATE;SOURCES" ${ARGN})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name ${folder})
   string(REPLACE "/" "::" alias ${folder})
@@ -28,6 +36,9 @@ function(jink_room)
     add_library(jink_${name} STATIC ${sources} ${R_SOURCES})
     target_include_directories(jink_${name} PUBLIC ${include})
     target_link_libraries(jink_${name} PUBLIC ${R_LINK} PRIVATE ${R_PRIVATE} jink_options)
+    if(TARGET jink_headers AND NOT R_OWN_OPTIONS)
+      target_precompile_headers(jink_${name} REUSE_FROM jink_headers)
+    endif()
   else()
     add_library(jink_${name} INTERFACE)
     target_include_directories(jink_${name} INTERFACE ${include})

@@ -14,6 +14,8 @@ done
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache} CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER:-ccache}
 # Objects are found by their dependency files, which spares the preprocessor's run before each compilation.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
+# What ccache asks for where headers are precompiled; no source of the project uses __TIME__.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
 # shellcheck disable=SC2086
 cmake --preset "$preset" ${options[@]+"${options[@]}"} ${JINK_CMAKE_ARGS:-} >"build-$preset.log" 2>&1 ||
   { cat "build-$preset.log" >&2; rm -f "build-$preset.log"; exit 1; }

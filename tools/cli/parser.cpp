@@ -82,14 +82,24 @@ Option Parser::add_flag(const std::string& name, bool& value, const std::string&
   return Option(app_->add_flag(name, value, what));
 }
 
-Option Parser::option(const std::string& name) const { return Option(app_->get_option(name)); }
+Option Parser::option(const std::string& name) const {
+  return Option(app_->get_option(name));
+}
 
-void Parser::footer(const std::string& text) const { app_->footer(text); }
+void Parser::footer(const std::string& text) const {
+  app_->footer(text);
+}
 
-std::size_t Parser::count(const std::string& name) const { return app_->count(name); }
+std::size_t Parser::count(const std::string& name) const {
+  return app_->count(name);
+}
 
-std::string Parser::name() const { return app_->get_name(); }
+std::string Parser::name() const {
+  return app_->get_name();
+}
 
-bool Parser::parsed() const { return app_->parsed(); }
+bool Parser::parsed() const {
+  return app_->parsed();
+}
 
 }  // namespace jink::tools::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options and arguments of a command, as it declares them. CLI11 stands behind it and is included by this room's sources
-// alone: each file that includes it compiles all of it, which takes as long as the rest of the file.
+// Options and arguments of a command, as it declares them. CLI11 stands behind it and is included by this room's
+// sources alone: each file that includes it compiles all of it, which takes as long as the rest of the file.
 #pragma once
 
 #include <cstddef>
