@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/families/families.hpp"
+#include "tests/support/repetitions.hpp"
 
 namespace jink::sim::flight {
 namespace {
@@ -138,15 +139,16 @@ void expect_reached(const std::string& name, std::uint64_t seed) {
 }
 
 TEST(ClosedLoop, ReachesTheTargetOfTheDefaultScenario) {
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) expect_reached("crossing", seed);
+  for (const std::uint64_t seed : support::repetitions({1U, 2U, 3U, 4U, 5U})) expect_reached("crossing", seed);
 }
 
 TEST(ClosedLoop, ReachesTheTargetsOfThePapersScenarios) {
-  for (const char* name : {"table2-1", "table2-2", "table2-3", "table2-4", "table2-5"}) expect_reached(name, 1);
+  for (const char* name : support::repetitions({"table2-1", "table2-2", "table2-3", "table2-4", "table2-5"}))
+    expect_reached(name, 1);
 }
 
 TEST(ClosedLoop, ReachesTheTargetOnABadDay) {
-  for (const std::uint64_t seed : {1U, 2U}) expect_reached("faults", seed);
+  for (const std::uint64_t seed : support::repetitions({1U, 2U})) expect_reached("faults", seed);
 }
 
 TEST(ClosedLoop, IsTheSameToTheBitAtAnyThreadCountAndAgain) {
@@ -247,7 +249,7 @@ TEST(ClosedLoop, TheTimeLimitEndsTheFlightInHold) {
 }
 
 TEST(ClosedLoop, WaitsClearOfATargetThatStaysBlocked) {
-  for (const double radius : {0.5, 1.5}) {
+  for (const double radius : support::repetitions({0.5, 1.5})) {
     SCOPED_TRACE(radius);
     config::Scenario scenario = straight();
     scenario.target = {10, 0, 2.5};

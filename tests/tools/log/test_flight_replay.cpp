@@ -14,6 +14,7 @@
 #include "config/error.hpp"
 #include "config/scenario.hpp"
 #include "sim/flight/closed_loop.hpp"
+#include "tests/support/repetitions.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/cli/summaries.hpp"
 #include "tools/log/flight_log.hpp"
@@ -76,7 +77,8 @@ TEST(FlightReplay, OtherParametersDecideOtherwise) {
   const auto log = fly(folder, "crossing", 2);
   EXPECT_TRUE(compare(log).differences.empty());
   // By way of the planner, of the request, and of how far the searches go.
-  for (const char* change : {"horizon.weight_clearance=5", "horizon.margin=1.2", "horizon.generations=5"}) {
+  for (const char* change :
+       support::repetitions({"horizon.weight_clearance=5", "horizon.margin=1.2", "horizon.generations=5"})) {
     const FlightComparison comparison = compare(log, 2, {change});
     ASSERT_FALSE(comparison.differences.empty()) << change;
     const auto apart = [](const PlanDifference& d) { return d.max_distance.value_or(0.0) > 0.0; };
