@@ -335,6 +335,12 @@ def recorded_flight(jink, folder):
     again = jink.summary("replay", log, "--threads", 1)
     check(again["format"] == "jink-flight-replay/1" and again["flight"] == flight["scenario"], "jink-flight-replay/1")
     check(again["plans"] == flight["plans"] and again["differ"] == 0 == len(again["differences"]), f"{again['plans']} plans, {again['differ']} differ")
+    without = subprocess.run([jink.program, "report", log, "--png", folder / "x.png", "--out", folder / "x.html"], capture_output=True,
+                             text=True, timeout=60, env={"PATH": "/nowhere"})
+    missing = without.returncode == 3 and "gnuplot-nox" in without.stderr and len(without.stderr.strip().splitlines()) == 1
+    check(missing and (folder / "x.html").exists(), f"without gnuplot: a page, no figure, status {without.returncode}")
+    jink.run("report", log, "--png", folder / "x.png")
+    check((folder / "x.png").read_bytes()[:4] == b"\x89PNG", "with it, a figure")
     other = jink.summary("replay", log, "--set", "horizon.margin=1.5", status=1)
     check(other["differ"] == len(other["differences"]) > 0, f"with a margin of 1.5 m {other['differ']} differ")
     check(jink.summary("replay", log, "--seed", 4, status=1)["differ"] > 0, "with another seed some differ")

@@ -66,6 +66,10 @@ void add(Series& series, double x, const Mark& mark, bool log) {
   put(series.greatest, mark.greatest);
 }
 
+bool has_values(const Series& series) {
+  return std::any_of(series.y.begin(), series.y.end(), [](double y) { return !std::isnan(y); });
+}
+
 Panel panel_of(const Quantity& quantity, const std::vector<const Row*>& rows, const std::vector<std::string>& pilots,
                const std::vector<std::string>& families) {
   Panel panel;
@@ -79,8 +83,7 @@ Panel panel_of(const Quantity& quantity, const std::vector<const Row*>& rows, co
       const auto place = std::find(families.begin(), families.end(), row->family) - families.begin();
       if (row->pilot == pilots[i]) add(series, static_cast<double>(place), quantity.mark(*row), quantity.log);
     }
-    const auto drawn = [](double y) { return !std::isnan(y); };
-    if (std::any_of(series.y.begin(), series.y.end(), drawn)) panel.series.push_back(std::move(series));
+    panel.series.push_back(std::move(series));  // also without values: the others keep their places
   }
   return panel;
 }
@@ -97,7 +100,7 @@ jink::tools::figures::Figure figure(const std::vector<const Row*>& rows, const s
   figure.width_mm = kWidth;
   for (const Quantity& quantity : quantities()) {
     Panel panel = panel_of(quantity, rows, pilots, families);
-    if (panel.series.empty()) continue;
+    if (std::none_of(panel.series.begin(), panel.series.end(), has_values)) continue;
     panel.frame = {kLeft, kGap + static_cast<double>(figure.panels.size()) * (kPanel + kGap), kWidth - kLeft - kRight,
                    kPanel};
     panel.x_numbers = false;
