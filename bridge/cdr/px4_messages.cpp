@@ -160,13 +160,13 @@ void LocalPositionFilter::count_resets(const LocalPosition& message, double now)
 }
 
 void LocalPositionFilter::apply(vehicle::VehicleState& state, double now) const {
-  state.position_stamp = valid_at_;
+  state.motion.stamp = valid_at_;
   state.estimate_resets = resets_;
   state.estimate_shift = frames::enu_from_ned(shift_ned_);
   if (origin_) state.origin = origin_;
   if (valid_) {
-    state.position = frames::enu_from_ned(valid_->position_ned);
-    state.velocity = frames::enu_from_ned(valid_->velocity_ned);
+    state.motion = {
+        {frames::enu_from_ned(valid_->position_ned), frames::enu_from_ned(valid_->velocity_ned)}, valid_at_, valid_at_};
     if (std::isfinite(valid_->heading)) state.yaw = frames::yaw_enu_from_heading(valid_->heading);
   }
   const bool held = valid_ && now - valid_at_ <= kMaxAge_s && valid(*newest_);

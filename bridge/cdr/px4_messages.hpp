@@ -61,7 +61,7 @@ class LocalPositionFilter {
 
   std::optional<LocalPosition> newest_;  // the newest taken in, valid or not
   std::optional<LocalPosition> valid_;   // the newest with all valid
-  double valid_at_ = -1.0;
+  double valid_at_ = base::kNever;
   std::uint32_t resets_ = 0;
   Vec3 shift_ned_ = Vec3::Zero();
   std::optional<frames::Geodetic> origin_;

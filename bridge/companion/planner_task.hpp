@@ -27,7 +27,7 @@ struct PlanJob {
   std::uint64_t number = 0;
   double begun = 0.0;
   double start = 0.0;
-  double newest_track = -1.0;          ///< reception of the newest track message that went in; negative: none
+  std::optional<double> newest_track;  ///< reception of the newest track message that went in
   double waited = 0.0;                 ///< s, SetpointStream::waited() that the request was made with
   Vec3 estimate_shift = Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };

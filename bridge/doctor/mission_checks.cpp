@@ -25,22 +25,22 @@ std::string point(const Vec3& p) {
 
 Check inspect_position(const config::Mission& mission, const LinkFindings& heard) {
   const vehicle::VehicleState& s = heard.state;
-  if (s.position_stamp < 0.0 && mission.state == config::Transport::kDds) {
+  if (!s.motion.heard() && mission.state == config::Transport::kDds) {
     return {Level::kWarning, "local position", "not on MAVLink, so the mission is not checked against it",
             "stream LOCAL_POSITION_NED (32) on this link too"};
   }
-  if (s.position_stamp < 0.0) {
+  if (!s.motion.heard()) {
     return {Level::kFault, "local position", "never heard", "wait for GPS or another position source"};
   }
-  const std::string where = point(s.position) + " m east, north, up";
+  const std::string where = point(s.motion.value.position) + " m east, north, up";
   if (!s.local_position_ok) {
     return {Level::kFault, "local position",
             where + fmt::format(", but not valid ({:.1f} s old)", heard.position_age_s),
             "wait for GPS or another position source"};
   }
-  if (!s.in_air && std::abs(s.position.z()) > kGroundHeight) {
+  if (!s.in_air && std::abs(s.motion.value.position.z()) > kGroundHeight) {
     return {Level::kWarning, "local position",
-            where + fmt::format(": on the ground at {:.1f} m above the local origin", s.position.z()),
+            where + fmt::format(": on the ground at {:.1f} m above the local origin", s.motion.value.position.z()),
             "heights in the mission count from the local origin: restart the autopilot here, or reckon with it"};
   }
   return {Level::kOk, "local position", where, ""};
@@ -62,8 +62,8 @@ Check inspect_origin(const config::Mission& mission, const LinkFindings& heard) 
 
 // Where the flight begins: above the present place, or here when it is in the air already.
 Vec3 beginning(const config::Mission& mission, const vehicle::VehicleState& s) {
-  Vec3 start = s.position;
-  if (!s.in_air) start.z() = s.position.z() + mission.takeoff_height;
+  Vec3 start = s.motion.value.position;
+  if (!s.in_air) start.z() = s.motion.value.position.z() + mission.takeoff_height;
   start.z() = std::max(start.z(), mission.min_height);
   return start;
 }
@@ -76,10 +76,10 @@ Check inspect_fence(const config::Mission& mission, const vehicle::VehicleState&
   const std::string box = point(fence.min) + " to " + point(fence.max);
   const Vec3 start = beginning(mission, s);
   // On the ground only the sides matter: it climbs into the volume.
-  Vec3 here = s.position;
+  Vec3 here = s.motion.value.position;
   if (!s.in_air) here.z() = std::clamp(here.z(), fence.min.z(), fence.max.z());
   if (!fence.contains(here)) {
-    return {Level::kFault, "geofence", box + " does not contain the vehicle at " + point(s.position),
+    return {Level::kFault, "geofence", box + " does not contain the vehicle at " + point(s.motion.value.position),
             "move the vehicle or the geofence: it counts from the autopilot's local origin"};
   }
   if (!fence.contains(start)) {
@@ -141,7 +141,7 @@ std::vector<Check> inspect_mission(const config::Mission& mission, const LinkFin
                                                  : std::string("no aircraft: an empty sky, or no receiver"),
                       ""});
   }
-  if (heard.state.position_stamp < 0.0) return checks;
+  if (!heard.state.motion.heard()) return checks;
   checks.push_back(inspect_fence(mission, heard.state));
   inspect_waypoints(mission, heard.state, checks);
   return checks;

@@ -187,7 +187,7 @@ LinkFindings listen(mavsdk::MavsdkLink& link, const base::Clock& clock, double s
   heard.rates = link.rates();
   heard.listened_s = clock.now() - since;
   heard.state = link.state();
-  heard.position_age_s = clock.now() - heard.state.position_stamp;
+  heard.position_age_s = heard.state.motion.age(clock.now());
   heard.info = link.info();
   heard.counts = link.counts();
   while (const auto notice = link.next_notice()) heard.notices.push_back(*notice);

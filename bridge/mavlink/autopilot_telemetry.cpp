@@ -78,10 +78,8 @@ bool AutopilotTelemetry::on(double now, const LocalPosition& message) {
   }
   position_boot_ms_ = message.boot_ms;
   ++counts_.positions;
-  state_.position_stamp = now;
-  state_.position = message.position;
-  state_.velocity = message.velocity;
-  resets_.on_position({message.boot_ms * 1e-3, state_.position, state_.velocity});
+  state_.motion = {{message.position, message.velocity}, now, now};
+  resets_.on_position({message.boot_ms * 1e-3, message.position, message.velocity});
   return true;
 }
 
@@ -138,7 +136,7 @@ void AutopilotTelemetry::on(const StatusText& message) {
 
 vehicle::VehicleState AutopilotTelemetry::state(double now) const {
   vehicle::VehicleState state = state_;
-  const bool fresh = state.position_stamp >= 0.0 && now - state.position_stamp <= kPositionMaxAge_s;
+  const bool fresh = state.motion.age(now) <= kPositionMaxAge_s;
   state.local_position_ok = fresh && estimator_ok_;
   state.health = sys_status_heard_ ? failed_health_ : "no SYS_STATUS yet";
   if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";

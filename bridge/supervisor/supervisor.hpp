@@ -4,51 +4,16 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
+#include <variant>
 
+#include "bridge/supervisor/flight_phases.hpp"
+#include "bridge/supervisor/hazards.hpp"
+#include "bridge/supervisor/mode_changes.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "config/mission.hpp"
 
 namespace jink::bridge::supervisor {
-
-enum class Phase {
-  kWaiting,   ///< for autopilot, health, tracks
-  kEngaging,  ///< setpoints stream; OFFBOARD is asked for, then arming
-  kClimbing,  ///< take-off, in OFFBOARD
-  kFlying,    ///< follows plans
-  kStopping,  ///< brakes, then hands over
-  kHandover,  ///< HOLD is asked for
-  kLanding,   ///< NAV_LAND is asked for and watched
-  kDone
-};
-std::string_view to_string(Phase phase);
-
-/// How a flight ended; the names of contracts' flight summary.
-enum class Outcome { kNone, kReached, kCollision, kTimeout, kLeftWorld, kStartBlocked, kAborted };
-std::string_view to_string(Outcome outcome);
-
-/// Who did not show up within the time-out, for exit code 3.
-enum class MissingPeer { kNone, kAutopilot, kTracks };
-
-struct SupervisorSettings {
-  double peer_timeout = 30.0;    ///< for the autopilot's first words and the first tracks
-  double health_timeout = 60.0;  ///< from then on, for it to become armable
-  double stale_state = 0.2;      ///< age of the position at which to brake
-  double stale_plan = 0.3;       ///< age of the newest plan at which to brake
-  double give_up = 3.0;          ///< braking for so long at a stretch, or twice that in pieces, ends the flight in HOLD
-};
-
-/// What the companion knows besides the vehicle's state.
-struct FlightPicture {
-  double newest_tracks = -1.0;  ///< reception of the newest track message; negative: never
-  double newest_plan = -1.0;    ///< when the newest plan was made; negative: none
-  int lost_writers = 0;         ///< writers of tracks that were live in this flight and are silent, not replaced
-  double unsent_for = 0.0;      ///< s, for which setpoints could not be handed to the transport
-  bool at_takeoff_height = false;
-  bool at_target = false;                        ///< within the arrival tolerance of the last waypoint, slow
-  bool at_rest = false;                          ///< the brake has done its work
-  std::optional<vehicle::CommandReport> report;  ///< newest answer of the autopilot
-};
 
 /// What the companion is to do in this step.
 struct Decision {
@@ -68,78 +33,66 @@ class Supervisor {
       : mission_(mission), settings_(settings) {}
 
   /// One step at time `now` (non-decreasing).
-  Decision update(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
+  Decision update(double now, const vehicle::VehicleState& state, const FlightContext& flight);
   /// Ends the flight: brakes, hands over to HOLD. On the ground it just ends.
   void stop(double now, Outcome outcome, std::string reason);
 
-  [[nodiscard]] Phase phase() const { return phase_; }
-  [[nodiscard]] bool done() const { return phase_ == Phase::kDone; }
-  [[nodiscard]] Outcome outcome() const { return outcome_; }
-  [[nodiscard]] const std::string& reason() const { return reason_; }
-  [[nodiscard]] MissingPeer missing_peer() const { return missing_peer_; }
+  [[nodiscard]] Phase phase() const { return phase_of(phase_); }
+  [[nodiscard]] bool done() const { return std::holds_alternative<Done>(phase_); }
+  /// kNone before it is done.
+  [[nodiscard]] Outcome outcome() const { return done() ? ending_of(phase_)->outcome : Outcome::kNone; }
+  /// Why the flight ends; empty before that.
+  [[nodiscard]] std::string reason() const;
+  [[nodiscard]] MissingPeer missing_peer() const;
   /// What is being waited for; for people. Empty: nothing.
   [[nodiscard]] const std::string& waiting_for() const { return waiting_for_; }
   /// Why the vehicle brakes though nobody ended the flight; empty: it does not.
-  [[nodiscard]] const std::string& hazard() const { return hazard_; }
-  /// When OFFBOARD flight began; negative: not yet.
-  [[nodiscard]] double flight_began() const { return flight_began_; }
+  [[nodiscard]] const std::string& hazard() const { return hazard_.text(); }
+  /// When OFFBOARD flight began; none: not yet.
+  [[nodiscard]] std::optional<double> flight_began() const { return flight_began_; }
 
  private:
   static constexpr double kHeartbeatTimeout = 3.0;  // s; PX4 sends one a second
-  // s, in flight: a link that loses every fifth packet loses three heartbeats in a row twice in five minutes.
-  static constexpr double kHeartbeatLost = 5.0;
 
-  void enter(Phase phase, double now);
-  void finish(Outcome outcome, std::string reason);
-  std::optional<vehicle::Command> ask(vehicle::Command command, double now, const vehicle::VehicleState& state);
-  Decision wait(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  Decision engage(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  Decision climb(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  Decision fly(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  Decision hand_over(double now, const vehicle::VehicleState& state);
-  Decision land(double now, const vehicle::VehicleState& state);
-  Decision rescue(double now, const vehicle::VehicleState& state);
-  Decision fall_back(double now);
-  void flee_battery(double now, const vehicle::VehicleState& state);
-  [[nodiscard]] bool exhausted(double now, const vehicle::VehicleState& state) const;
-  void find_missing(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  void find_hazard(double now, const vehicle::VehicleState& state, const FlightPicture& picture);
-  bool taken_over(double now, const vehicle::VehicleState& state);
-  bool failsafe_took_over(double now, const vehicle::VehicleState& state);
-  bool outside_fence(const vehicle::VehicleState& state);
+  struct Input {
+    double now;
+    const vehicle::VehicleState& state;
+    const FlightContext& flight;
+  };
+  /// One step of each phase. It may replace the phase: what it was given is not to be touched after that.
+  Decision step(Waiting& phase, const Input& in);
+  Decision step(Engaging& phase, const Input& in);
+  Decision step(Climbing& phase, const Input& in);
+  Decision step(Flying& phase, const Input& in);
+  Decision step(Stopping& phase, const Input& in);
+  Decision step(Handover& phase, const Input& in);
+  Decision step(Landing& phase, const Input& in);
+  static Decision step(Done&, const Input&) { return {}; }
+  Decision rescue(Handover& phase, const Input& in);
+
+  /// True: the mode changed hands, and the flight is over.
+  bool ended_by_mode(const Input& in);
+  bool left_to_failsafe(const Input& in);
+  /// The ending that has begun, or else that of an aborted flight, with `what` added to its reason.
+  [[nodiscard]] Ending ending_with(const std::string& what) const;
+  void abort(const std::string& reason) { phase_ = Done{{Outcome::kAborted, reason, {}}}; }
+  void finish(Ending ending) { phase_ = Done{std::move(ending)}; }
+
+  [[nodiscard]] Situation situation(const Input& in, std::optional<double> following_since = {}) const;
+  void stop_for_hazard(const Input& in);
+  /// Takes in what is present. True: the vehicle is to brake, and the flight ends where that has lasted too long.
+  bool brakes_for_hazard(const Input& in, std::optional<double> following_since = {});
+  /// What a flight cannot begin without, into waiting_for_; returns whom that is about.
+  MissingPeer find_missing(const Input& in);
+  [[nodiscard]] bool outside_fence(const Vec3& position) const;
 
   config::Mission mission_;
   SupervisorSettings settings_;
-  Phase phase_ = Phase::kWaiting;
-  double entered_ = -1.0;  // the phase
-  double began_ = -1.0;    // the first update
-  double flight_began_ = -1.0;
-  double hazard_since_ = -1.0;
-  double hazard_time_ = 0.0;      // s, spent in hazards; forgotten at a third of the rate
-  double updated_ = -1.0;         // the last update
-  double failsafe_since_ = -1.0;  // of the autopilot
-  bool rescue_ = false;           // out of a failsafe that sinks: HOLD without setpoints
-  bool land_ = false;             // the stop ends in a landing, not in HOLD
-  bool landing_interrupted_ = false;
-  bool leave_landing_ = false;  // once it has begun
-  double granted_ = -1.0;       // when the autopilot granted OFFBOARD; negative: not yet
-  double absent_since_ = -1.0;  // who is waited for
-  MissingPeer absent_before_ = MissingPeer::kNone;
-  double asked_ = -1.0;  // the newest request
-  std::optional<vehicle::Command> asked_for_;
-  int tries_ = 0;
-  vehicle::FlightMode mode_before_ = vehicle::FlightMode::kUnknown;  // when OFFBOARD was first asked for
-  bool offboard_seen_ = false;                                       // the heartbeat confirmed OFFBOARD since we asked
-  double unsettled_until_ = -1.0;            // a request may act until then: an older heartbeat says nothing of it
-  double not_ready_since_ = -1.0;            // while engaging
-  MissingPeer absent_ = MissingPeer::kNone;  // whom waiting_for_ is about
-  Outcome outcome_ = Outcome::kNone;
-  Outcome pending_outcome_ = Outcome::kNone;  // once the hand-over is through
-  std::string reason_;
-  std::string refusal_;  // the autopilot's last no
+  FlightPhase phase_;
+  ModeChanges mode_changes_;
+  HazardWatch hazard_;
+  std::optional<double> flight_began_;
   std::string waiting_for_;
-  std::string hazard_;
-  MissingPeer missing_peer_ = MissingPeer::kNone;
 };
 
 }  // namespace jink::bridge::supervisor

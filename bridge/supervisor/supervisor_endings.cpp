@@ -1,163 +1,171 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a flight ends that had begun: taken over by a pilot or a failsafe, handed over in HOLD, landed.
 #include <string>
+#include <utility>
 
 #include "bridge/supervisor/supervisor.hpp"
 
 namespace jink::bridge::supervisor {
 namespace {
 
+constexpr double kShortestStop = 0.3;     // s, of braking before a hand-over
+constexpr double kLongestStop = 4.0;      // s
 constexpr double kLandingTimeout = 90.0;  // s
-constexpr double kFailsafePasses =
-    1.5;  // s: PX4 is back in OFFBOARD 0.4 s after the stream, a heartbeat may be 1 s old
 
 using Motion = Decision::Motion;
 
-// Modes in which the autopilot knows where to fly to; in the others it waits for the sticks, and sinks without them.
-bool flies_by_itself(vehicle::FlightMode mode) {
-  return mode == vehicle::FlightMode::kHold || mode == vehicle::FlightMode::kLand ||
-         mode == vehicle::FlightMode::kReturn || mode == vehicle::FlightMode::kTakeoff ||
-         mode == vehicle::FlightMode::kMission;
+bool grounded(const vehicle::VehicleState& state) {
+  return !state.armed && !state.in_air;
+}
+
+std::string named(vehicle::FlightMode mode) {
+  return "mode " + std::string(vehicle::to_string(mode));
 }
 
 }  // namespace
 
-// True, and the flight is over, where somebody else changed the mode or the motors went off.
-bool Supervisor::taken_over(double now, const vehicle::VehicleState& state) {
-  const bool asked = phase_ == Phase::kEngaging || phase_ == Phase::kStopping || phase_ == Phase::kHandover;
-  const bool ours = phase_ == Phase::kEngaging || phase_ == Phase::kClimbing || phase_ == Phase::kFlying ||
-                    phase_ == Phase::kStopping;
-  if (asked && state.mode == vehicle::FlightMode::kOffboard) offboard_seen_ = true;
-  std::string what;
-  if (ours && flight_began_ >= 0.0 && !state.armed) {
-    what = "the autopilot disarmed in flight";
-  } else if ((ours && offboard_seen_ && state.mode != vehicle::FlightMode::kOffboard) ||
-             (asked && !offboard_seen_ && state.mode != mode_before_)) {
-    if (state.failsafe && phase_ == Phase::kEngaging) {  // of a companion before us: our stream ends it
-      offboard_seen_ = false;
-      return false;
-    }
-    if (state.failsafe) return failsafe_took_over(now, state);
-    what = "the mode was changed to " + std::string(vehicle::to_string(state.mode)) + " by pilot or autopilot";
-  } else {
-    failsafe_since_ = -1.0;
-    return false;
-  }
-  if (!reason_.empty()) reason_ += "; then " + what;
-  finish(pending_outcome_ == Outcome::kNone ? Outcome::kAborted : pending_outcome_, what);
-  return true;
+Ending Supervisor::ending_with(const std::string& what) const {
+  const Ending* begun = ending_of(phase_);
+  if (begun == nullptr) return {Outcome::kAborted, what, {}};
+  Ending ending = *begun;
+  ending.reason += (ending.reason.empty() ? "" : "; then ") + what;
+  return ending;
 }
 
-// The autopilot's failsafe flies. True where it is left the vehicle for good.
-bool Supervisor::failsafe_took_over(double now, const vehicle::VehicleState& state) {
-  if (failsafe_since_ < 0.0) failsafe_since_ = now;
-  if ((phase_ == Phase::kFlying || phase_ == Phase::kClimbing) && now - failsafe_since_ <= kFailsafePasses)
-    return false;
-  const std::string what = "the autopilot's failsafe took over, mode " + std::string(vehicle::to_string(state.mode));
-  reason_ += (reason_.empty() ? "" : "; then ") + what;
-  if (pending_outcome_ == Outcome::kNone) pending_outcome_ = Outcome::kAborted;
-  hazard_.clear();
-  if (flies_by_itself(state.mode)) {
-    finish(pending_outcome_, {});
-    return true;
+bool Supervisor::ended_by_mode(const Input& in) {
+  switch (mode_changes_.judge(in.now, phase(), flight_began_.has_value(), in.state)) {
+    case ModeChange::kNone:
+    case ModeChange::kFailsafePasses:
+      return false;
+    case ModeChange::kFailsafe:
+      return left_to_failsafe(in);
+    case ModeChange::kTakeover:
+      finish(ending_with("the mode was changed to " + std::string(vehicle::to_string(in.state.mode)) +
+                         " by pilot or autopilot"));
+      return true;
+    case ModeChange::kDisarmed:
+      finish(ending_with("the autopilot disarmed in flight"));
+      return true;
   }
-  rescue_ = true;
-  enter(Phase::kHandover, now);
   return false;
 }
 
-// Where the battery ends, the flight ends on the ground.
-void Supervisor::flee_battery(double now, const vehicle::VehicleState& state) {
-  if (state.battery != vehicle::BatteryState::kCritical) return;
-  if (phase_ == Phase::kClimbing || phase_ == Phase::kFlying) stop(now, Outcome::kAborted, "the battery is critical");
-  if (phase_ == Phase::kStopping) land_ = true;
+// True where the failsafe has the vehicle for good; otherwise HOLD is asked for.
+bool Supervisor::left_to_failsafe(const Input& in) {
+  Ending ending = ending_with("the autopilot's failsafe took over, " + named(in.state.mode));
+  hazard_.clear();
+  if (flies_by_itself(in.state.mode)) {
+    finish(std::move(ending));
+    return true;
+  }
+  const auto* before = std::get_if<Handover>(&phase_);
+  const bool landing_interrupted = before != nullptr && before->landing_interrupted;
+  phase_ = Handover{in.now, std::move(ending), landing_interrupted, /*rescue=*/true};
+  return false;
+}
+
+Decision Supervisor::step(Stopping& phase, const Input& in) {
+  const double stopping = in.now - phase.since;
+  const bool stopped = !in.state.in_air || stopping > kLongestStop || (in.flight.at_rest && stopping > kShortestStop);
+  if (stopped && phase.land && in.state.armed) {
+    phase_ = Landing{in.now, std::move(phase.ending), /*forced=*/true};
+  } else if (stopped) {
+    phase_ = Handover{in.now, std::move(phase.ending)};
+  }
+  return {Motion::kBrake, {}};
 }
 
 // Out of a failsafe that only sinks. Without a position HOLD cannot be flown, and the failsafe is what is left.
-Decision Supervisor::rescue(double now, const vehicle::VehicleState& state) {
+Decision Supervisor::rescue(Handover& phase, const Input& in) {
+  const auto& [now, state, flight] = in;
+  std::string& reason = phase.ending.reason;
   if (state.mode == vehicle::FlightMode::kOffboard) {  // it went back by itself: the stream was still on its way
-    rescue_ = false;
-    return {Motion::kBrake, ask(vehicle::Command::kHold, now, state)};
+    phase.rescue = false;
+    return {Motion::kBrake, phase.request.ask(vehicle::Command::kHold, now, state)};
   }
-  if (!state.failsafe || flies_by_itself(state.mode) || (!state.armed && !state.in_air)) {
-    finish(pending_outcome_, {});
-  } else if (!state.local_position_ok) {
-    reason_ += "; without a position there is no HOLD, the failsafe has the vehicle";
-    finish(pending_outcome_, {});
-  } else if (exhausted(now, state)) {
-    reason_ +=
-        "; HOLD was not to be had" + (refusal_.empty() ? "" : " (" + refusal_ + ")") + ", the failsafe has the vehicle";
-    finish(pending_outcome_, {});
-  } else {
-    return {Motion::kNone, ask(vehicle::Command::kHold, now, state)};
+  if (state.failsafe && !flies_by_itself(state.mode) && !grounded(state)) {
+    if (!state.local_position_ok) {
+      reason += "; without a position there is no HOLD, the failsafe has the vehicle";
+    } else if (phase.request.exhausted(now, state)) {
+      const std::string refusal = phase.request.refusal();
+      reason +=
+          "; HOLD was not to be had" + (refusal.empty() ? "" : " (" + refusal + ")") + ", the failsafe has the vehicle";
+    } else {
+      return {Motion::kNone, phase.request.ask(vehicle::Command::kHold, now, state)};
+    }
   }
+  finish(std::move(phase.ending));
   return {};
 }
 
-Decision Supervisor::hand_over(double now, const vehicle::VehicleState& state) {
-  if (rescue_) return rescue(now, state);
+Decision Supervisor::step(Handover& phase, const Input& in) {
+  if (phase.rescue) return rescue(phase, in);
+  const auto& [now, state, flight] = in;
+  Ending& ending = phase.ending;
   const bool offboard = state.mode == vehicle::FlightMode::kOffboard;
-  const bool landing = landing_interrupted_ && state.mode == vehicle::FlightMode::kLand;
-  const bool grounded = !state.armed && !state.in_air;
-  const Motion motion = landing                                 ? Motion::kNone
-                        : pending_outcome_ == Outcome::kReached ? Motion::kFollow
-                                                                : Motion::kBrake;
+  const bool landing = phase.landing_interrupted && state.mode == vehicle::FlightMode::kLand;
+  const Motion motion = landing                               ? Motion::kNone
+                        : ending.outcome == Outcome::kReached ? Motion::kFollow
+                                                              : Motion::kBrake;
   // Stopped while OFFBOARD or arming was asked for: whether that acted, only a newer heartbeat tells.
-  if (state.heartbeat_stamp <= unsettled_until_ && (offboard ? grounded : !offboard_seen_)) {
-    if (now - entered_ <= kHeartbeatTimeout) return {motion, {}};
-    reason_ += "; the autopilot's heartbeat is missing, whether it is in OFFBOARD is not known";
-    finish(pending_outcome_, {});
+  const bool unsettled = ending.unsettled_until && state.heartbeat_stamp <= *ending.unsettled_until;
+  if (unsettled && (offboard ? grounded(state) : !mode_changes_.offboard_seen())) {
+    if (now - phase.since <= kHeartbeatTimeout) return {motion, {}};
+    ending.reason += "; the autopilot's heartbeat is missing, whether it is in OFFBOARD is not known";
+    finish(std::move(ending));
     return {};
   }
   if (state.failsafe && !offboard && !flies_by_itself(state.mode)) {
-    reason_ += "; then the autopilot's failsafe took over, mode " + std::string(vehicle::to_string(state.mode));
-    pending_outcome_ = Outcome::kAborted;
-    rescue_ = true;
-    return rescue(now, state);
+    ending.reason += "; then the autopilot's failsafe took over, " + named(state.mode);
+    ending.outcome = Outcome::kAborted;
+    phase.rescue = true;
+    return rescue(phase, in);
   }
   // HOLD is there; or somebody chose another mode, and that stands.
-  if ((!offboard && !landing) || grounded) {
-    finish(pending_outcome_, {});
+  if ((!offboard && !landing) || grounded(state)) {
+    finish(std::move(ending));
     return {};
   }
-  if (exhausted(now, state)) {
-    finish(pending_outcome_ == Outcome::kReached ? Outcome::kAborted : pending_outcome_, {});
-    reason_ += "; HOLD was never confirmed, the autopilot's own failsafe has the vehicle";
+  if (phase.request.exhausted(now, state)) {
+    if (ending.outcome == Outcome::kReached) ending.outcome = Outcome::kAborted;
+    ending.reason += "; HOLD was never confirmed, the autopilot's own failsafe has the vehicle";
+    finish(std::move(ending));
     return {};
   }
   // The stream goes on until HOLD is confirmed, so that the vehicle is never without an order.
-  return {motion, ask(vehicle::Command::kHold, now, state)};
+  return {motion, phase.request.ask(vehicle::Command::kHold, now, state)};
 }
 
-Decision Supervisor::land(double now, const vehicle::VehicleState& state) {
-  if (!state.armed && !state.in_air) {
-    finish(pending_outcome_, {});
-    return {};
-  }
+Decision Supervisor::step(Landing& phase, const Input& in) {
+  const auto& [now, state, flight] = in;
   const auto fail = [&](const std::string& what) {
-    reason_ += ", but " + what;
-    pending_outcome_ = Outcome::kAborted;
+    phase.ending.reason += ", but " + what;
+    phase.ending.outcome = Outcome::kAborted;
   };
-  if (state.mode != vehicle::FlightMode::kOffboard && state.mode != vehicle::FlightMode::kLand) {
-    fail("the landing was taken over: mode " + std::string(vehicle::to_string(state.mode)));
-    finish(pending_outcome_, {});
+  if (grounded(state)) {
+    finish(std::move(phase.ending));
     return {};
   }
   if (state.mode == vehicle::FlightMode::kLand) {
-    if (leave_landing_) {
-      finish(pending_outcome_, {});
-    } else if (now - entered_ > kLandingTimeout) {
-      fail("the landing did not end");
-      finish(pending_outcome_, {});
-    }
+    const bool endless = !phase.leave && now - phase.since > kLandingTimeout;
+    if (endless) fail("the landing did not end");
+    if (endless || phase.leave) finish(std::move(phase.ending));
     return {};
   }
-  if (exhausted(now, state)) {
-    fail("the autopilot does not land" + (refusal_.empty() ? "" : ": " + refusal_));
-    enter(Phase::kHandover, now);
-    return {Motion::kBrake, ask(vehicle::Command::kHold, now, state)};
+  if (state.mode != vehicle::FlightMode::kOffboard) {
+    fail("the landing was taken over: " + named(state.mode));
+    finish(std::move(phase.ending));
+    return {};
   }
-  return {land_ ? Motion::kBrake : Motion::kFollow, ask(vehicle::Command::kLand, now, state)};
+  if (phase.request.exhausted(now, state)) {
+    const std::string refusal = phase.request.refusal();
+    fail("the autopilot does not land" + (refusal.empty() ? "" : ": " + refusal));
+    Handover next{now, std::move(phase.ending)};
+    Decision decision{Motion::kBrake, next.request.ask(vehicle::Command::kHold, now, state)};
+    phase_ = std::move(next);
+    return decision;
+  }
+  return {phase.forced ? Motion::kBrake : Motion::kFollow, phase.request.ask(vehicle::Command::kLand, now, state)};
 }
 
 }  // namespace jink::bridge::supervisor

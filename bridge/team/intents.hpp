@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "bridge/base/stamped.hpp"
 #include "bridge/frames/geodetic.hpp"
 #include "planner/base/trajectory.hpp"
 
@@ -41,11 +42,8 @@ const char* refusal(const Intent& intent);
 [[nodiscard]] std::uint32_t system_of(std::uint64_t vehicle);
 
 /// An intent as it came.
-struct IntentMessage {
-  std::uint64_t writer = 0;  ///< stable identity of the writer
-  double received = 0.0;     ///< companion's clock, at reception
-  double stamp_age = 0.0;    ///< system time at reception minus the stamp; as measured, may be absurd
-  Intent intent;             ///< within IntentLimits
+struct IntentMessage : base::Reception<base::Frame::kSender> {
+  Intent intent;  ///< within IntentLimits
 };
 
 struct IntentStatus {

@@ -48,12 +48,17 @@ TimedPath shortened(const TimedPath& path, double until) {
   return result;
 }
 
-/// The path from the sender's frame into ours.
-void move_to(const frames::Geodetic& ours, const frames::Geodetic& theirs, TimedPath& path) {
-  if (ours == theirs) return;
+/// The message's path in our frame and clock.
+base::Stamped<TimedPath, base::Frame::kLocal> placed(const IntentMessage& message, double stamp,
+                                                     const frames::Geodetic& ours) {
+  base::Stamped<TimedPath, base::Frame::kLocal> path{message.intent.path, stamp, message.received};
+  for (TimedPoint& point : path.value) point.t += stamp;
+  const frames::Geodetic& theirs = *message.intent.origin;
+  if (ours == theirs) return path;
   const frames::LocalFrame from(theirs);
   const frames::LocalFrame to(ours);
-  for (TimedPoint& point : path) point.position = to.to_enu(from.to_geodetic(point.position));
+  for (TimedPoint& point : path.value) point.position = to.to_enu(from.to_geodetic(point.position));
+  return path;
 }
 
 }  // namespace
@@ -80,13 +85,13 @@ void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) 
   Peer& peer = known == peers_.end() ? peers_[message.writer] : known->second;
   peer.vehicle = message.intent.vehicle;
   peer.seen = message.received;
-  const std::optional<double> delay = peer.clock.delay(message.received, message.stamp_age);
+  const std::optional<double> told = peer.clock.stamp(message);
   if (peer.clock.off() && !std::exchange(peer.announced_clock, true)) {
     notices_.push_back(
         {"team_clock",
          name_of(peer.vehicle) + ": its stamps are not this computer's time; only changes of its delay are known"});
   }
-  if (!delay) {
+  if (!told) {
     ++late_;
     return;
   }
@@ -96,29 +101,24 @@ void Team::take(const IntentMessage& message, const vehicle::VehicleState& own) 
                     (own.origin ? "it does not know its origin" : "this vehicle's origin is not known");
     return;
   }
-  const double told = message.received - *delay;
-  if (peer.placed >= 0.0 && told < peer.told) return;  // overtaken on the way
-  if (peer.placed < 0.0) notices_.push_back({"team_vehicle", name_of(peer.vehicle) + " tells where it will be"});
-  peer.placed = message.received;
-  peer.told = told;
-  peer.path = message.intent.path;
-  move_to(*own.origin, *message.intent.origin, peer.path);
-  for (TimedPoint& point : peer.path) point.t += told;
+  if (peer.path && *told < peer.path->stamp) return;  // overtaken on the way
+  if (!peer.path) notices_.push_back({"team_vehicle", name_of(peer.vehicle) + " tells where it will be"});
+  peer.path = placed(message, *told, *own.origin);
   peer.radius = message.intent.radius;
   peer.margin = message.intent.margin;
-  if (peer.clock.off()) peer.margin += kUnknownDelay * fastest(peer.path);
+  if (peer.clock.off()) peer.margin += kUnknownDelay * fastest(peer.path->value);
 }
 
 void Team::forget_the_silent(double now) {
   const double limit = kFresh + coast_s_;
   for (auto& [writer, peer] : peers_) {
-    const bool silent = peer.placed >= 0.0 && now - peer.placed > limit;
+    const bool silent = peer.path && now - peer.path->received > limit;
     if (silent && !peer.announced_silent) {
       notices_.push_back({"team_lost", name_of(peer.vehicle) + ": nothing usable heard for " + std::to_string(limit) +
                                            " s, it is taken to hang where its path ended"});
     }
     peer.announced_silent = silent;
-    if (silent && now - peer.placed > kForgetPeer) peer.placed = -1.0;
+    if (silent && now - peer.path->received > kForgetPeer) peer.path.reset();
   }
   // Who began anew speaks for itself again.
   const auto replaced = [&](const Peer& old) {
@@ -151,16 +151,16 @@ void Team::find_duplicate_systems(double now) {
 std::vector<planner::geometry::KnownPath> Team::paths(double now, double start) const {
   std::vector<planner::geometry::KnownPath> paths;
   for (const auto& [writer, peer] : peers_) {
-    if (peer.placed < 0.0) continue;
+    if (!peer.path) continue;
     planner::geometry::KnownPath path;
     path.id = peer.vehicle;
-    path.points = peer.path;
+    path.points = peer.path->value;
     path.offset = start;
     path.radius = peer.radius;
     path.margin = peer.margin;
-    path.position_sigma = kSilentDoubt * std::max(0.0, now - peer.placed - kFresh);
+    path.position_sigma = kSilentDoubt * std::max(0.0, now - peer.path->received - kFresh);
     path.velocity_sigma = kDoubt;
-    path.age = std::max(0.0, start - peer.told);
+    path.age = std::max(0.0, peer.path->age(start));
     if (own_vehicle_ < peer.vehicle && !peer.announced_silent) path.until = kRightOfWay;  // who is silent gives no way
     paths.push_back(std::move(path));
   }
@@ -169,7 +169,7 @@ std::vector<planner::geometry::KnownPath> Team::paths(double now, double start) 
 
 void Team::tell(double now, const vehicle::VehicleState& own, const setpoints::SetpointStream* followed,
                 std::uint64_t plans) {
-  if (own.position_stamp < 0.0) return;
+  if (!own.motion.heard()) return;
   if (followed != nullptr && !followed->active()) followed = nullptr;
   measure_deviation(now, own, followed);
   if (plans == told_plans_ && now - last_told_ + 1e-6 < kPeriod) return;
@@ -188,22 +188,23 @@ void Team::tell(double now, const vehicle::VehicleState& own, const setpoints::S
 
 TimedPath Team::committed(double now, const vehicle::VehicleState& own,
                           const setpoints::SetpointStream* followed) const {
-  const TimedPoint here{now, own.position, own.velocity, Vec3::Zero()};
+  const TimedPoint here{now, own.motion.value.position, own.motion.value.velocity, Vec3::Zero()};
   if (followed == nullptr) {
     if (!own.in_air) return {here};
-    return {here, {now + kDrift, own.position + kDrift * own.velocity, Vec3::Zero(), Vec3::Zero()}};
+    return {here,
+            {now + kDrift, own.motion.value.position + kDrift * own.motion.value.velocity, Vec3::Zero(), Vec3::Zero()}};
   }
   // In take-off the place to hold is a step away.
   TimedPath path = followed->ahead(now);
-  const double way = (path.front().position - own.position).norm();
+  const double way = (path.front().position - own.motion.value.position).norm();
   if (path.size() > 1 || way <= kOnTheWay) return path;
   return {here, {now + way / kWaySpeed, path.front().position, Vec3::Zero(), Vec3::Zero()}};
 }
 
 void Team::measure_deviation(double now, const vehicle::VehicleState& own, const setpoints::SetpointStream* followed) {
   const double error =
-      followed == nullptr ? 0.0 : (followed->reference(own.position_stamp).position - own.position).norm();
-  const double faded = deviation_at_ < 0.0 ? 0.0 : deviation_ * std::exp((deviation_at_ - now) / kForget);
+      followed == nullptr ? 0.0 : (followed->reference(own.motion.stamp).position - own.motion.value.position).norm();
+  const double faded = deviation_ * std::exp((deviation_at_ - now) / kForget);
   deviation_ = std::max(error, faded);
   deviation_at_ = now;
 }
@@ -228,7 +229,7 @@ std::vector<Team::Notice> Team::take_notices(double now) {
 
 std::size_t Team::vehicles() const {
   return static_cast<std::size_t>(
-      std::count_if(peers_.begin(), peers_.end(), [](const auto& item) { return item.second.placed >= 0.0; }));
+      std::count_if(peers_.begin(), peers_.end(), [](const auto& item) { return item.second.path.has_value(); }));
 }
 
 }  // namespace jink::bridge::team

@@ -71,10 +71,9 @@ class Team {
   struct Peer {
     std::uint64_t vehicle = 0;
     tracking::ClockOffsetEstimator clock;
-    double seen = 0.0;              // reception of the newest message
-    double placed = -1.0;           // reception of the newest that could be used; negative: none
-    double told = 0.0;              // its stamp, in our clock
-    planner::base::TimedPath path;  // our frame and clock
+    double seen = 0.0;  // reception of the newest message
+    // Of the newest that could be used; its times are our clock.
+    std::optional<base::Stamped<planner::base::TimedPath, base::Frame::kLocal>> path;
     double radius = 0.0, margin = 0.0;
     bool announced_clock = false;
     bool announced_silent = false;
@@ -96,11 +95,11 @@ class Team {
   std::uint64_t unplaced_ = 0, late_ = 0, crowded_ = 0, untold_ = 0;
   std::uint64_t said_unplaced_ = 0, said_late_ = 0, said_crowded_ = 0, said_untold_ = 0, said_refused_ = 0;
   std::string unplaced_why_;
-  double last_news_ = -1.0;
-  double last_told_ = -planner::base::kInfinity;
+  double last_news_ = base::kNever;
+  double last_told_ = base::kNever;
   std::uint64_t told_plans_ = 0;
-  double deviation_ = 0.0;
-  double deviation_at_ = -1.0;
+  double deviation_ = 0.0;  // of late
+  double deviation_at_ = base::kNever;
 };
 
 }  // namespace jink::bridge::team

@@ -25,11 +25,11 @@ std::optional<double> ClockOffsetEstimator::delay(double received, double stamp_
     return 0.0;
   }
   if (stamp_age - smallest_age_ > kLongestDelay) {
-    if (late_since_ < 0.0) late_since_ = received;
-    if (!advanced || received - late_since_ <= kLongestDelay) return std::nullopt;
+    if (!late_since_) late_since_ = received;
+    if (!advanced || received - *late_since_ <= kLongestDelay) return std::nullopt;
     smallest_age_ = stamp_age;
   }
-  late_since_ = -1.0;
+  late_since_.reset();
   off_ = !(smallest_age_ >= 0.0 && smallest_age_ <= kLongestDelay);
   return std::min(off_ ? stamp_age - smallest_age_ : stamp_age, kLongestDelay);
 }

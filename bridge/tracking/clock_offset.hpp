@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "bridge/base/stamped.hpp"
+
 namespace jink::bridge::tracking {
 
 /// The stamps of one writer. A stamp that lies in the future or more than kLongestDelay back tells of a clock that is
@@ -18,6 +20,12 @@ class ClockOffsetEstimator {
   /// The delay of a message received at `received` (our clock) when its stamp was `stamp_age` old by system time, in
   /// [0, kLongestDelay]; nothing where it is too old to say anything of the present.
   std::optional<double> delay(double received, double stamp_age);
+  /// When what the message holds was true, by our clock; nothing where it is too old.
+  template <base::Frame F>
+  std::optional<double> stamp(const base::Reception<F>& message) {
+    const std::optional<double> late = delay(message.received, message.stamp_age);
+    return late ? std::optional(message.received - *late) : std::nullopt;
+  }
   /// The newest stamp could not be believed: only changes of the delay are known.
   [[nodiscard]] bool off() const { return off_; }
 
@@ -25,7 +33,7 @@ class ClockOffsetEstimator {
   double smallest_age_ = 0.0;  // of the stamps
   double stamp_ = 0.0;         // the newest message's, to within a constant
   double received_ = 0.0;
-  double late_since_ = -1.0;
+  std::optional<double> late_since_;
   bool first_ = true;
   bool advances_ = false;
   bool off_ = false;

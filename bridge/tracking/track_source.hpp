@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "bridge/base/notifier.hpp"
+#include "bridge/base/stamped.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::bridge::tracking {
 
 /// One message of one writer: all tracks that it now sees, in ENU.
-struct TrackMessage {
-  std::uint64_t writer = 0;  ///< stable identity of the writer
-  double received = 0.0;     ///< companion's clock, at reception
-  double stamp_age = 0.0;    ///< system time at reception minus the message's stamp; as measured, may be absurd
+struct TrackMessage : base::Reception<base::Frame::kLocal> {
   std::vector<planner::base::Track> tracks;
   std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
   bool sends_when_empty =

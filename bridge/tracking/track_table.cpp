@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unordered_set>
+#include <utility>
 
 #include "bridge/tracking/track_inbox.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
@@ -30,13 +31,13 @@ void make_ids_unique(std::vector<planner::base::Track>& tracks) {
 
 }  // namespace
 
-// How old the message's measurement was at reception; nothing where it is too old to say anything of the present.
-std::optional<double> TrackTable::delay_of(const TrackMessage& message) {
+// When the message's tracks were measured; nothing where that is too long ago to say anything of the present.
+std::optional<double> TrackTable::stamp_of(const TrackMessage& message) {
   Writer& writer = writers_[message.writer];
   writer.received = message.received;
-  const std::optional<double> delay = writer.clock.delay(message.received, message.stamp_age);
-  if (delay && writer.clock.off()) ++counts_.clock_offsets;
-  return delay;
+  const std::optional<double> stamp = writer.clock.stamp(message);
+  if (stamp && writer.clock.off()) ++counts_.clock_offsets;
+  return stamp;
 }
 
 // What moves has not moved. Nothing where nothing moves.
@@ -60,8 +61,8 @@ void TrackTable::remember(const TrackMessage& message) {
 }
 
 void TrackTable::ingest(const TrackMessage& message) {
-  const std::optional<double> delay = delay_of(message);
-  if (!delay) {
+  const std::optional<double> measured = stamp_of(message);
+  if (!measured) {
     ++counts_.late_messages;
     return;
   }
@@ -70,8 +71,8 @@ void TrackTable::ingest(const TrackMessage& message) {
     return;
   }
   remember(message);
-  const double measured = message.received - *delay;
-  if (message.sends_when_empty) newest_message_ = std::max(newest_message_, message.received);
+  if (message.sends_when_empty)
+    newest_message_ = std::max(newest_message_.value_or(message.received), message.received);
   Writer& writer = writers_[message.writer];
   writer.believed = message.received;
   writer.sends_when_empty = message.sends_when_empty;
@@ -91,23 +92,21 @@ void TrackTable::ingest(const TrackMessage& message) {
       known = entries_.emplace(key, Entry{}).first;
     }
     Entry& entry = known->second;
-    if (entry.seen > 0.0 && measured < entry.measured) continue;  // overtaken on the way
-    take(entry, track, measured);
-    entry.seen = message.received;
+    if (*measured < entry.track.stamp) continue;  // overtaken on the way
+    take(entry, {track, *measured, message.received});
   }
-  learn(message, measured);
+  learn(message, *measured);
 }
 
-void TrackTable::take(Entry& entry, const planner::base::Track& measured, double t) {
-  entry.track = measured;
-  if (measured.position_sigma > 0.0 || measured.velocity_sigma > 0.0) {
+void TrackTable::take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured) {
+  const double before = std::exchange(entry.track, measured).stamp;
+  if (measured.value.position_sigma > 0.0 || measured.value.velocity_sigma > 0.0) {
     if (!entry.filter) entry.filter = std::make_unique<prediction::ImmFilter>();
-    entry.filter->update(t - entry.measured, measured);
-    entry.filter->apply(entry.track);
+    entry.filter->update(measured.stamp - before, measured.value);
+    entry.filter->apply(entry.track.value);
   } else {
     entry.filter.reset();
   }
-  entry.measured = t;
 }
 
 // The ways of the tracks about the vehicle; the fits of the nearest first.
@@ -121,9 +120,9 @@ void TrackTable::learn(const TrackMessage& message, double t) {
   std::vector<Due> due;
   for (const planner::base::Track& measured : message.tracks) {
     const auto known = entries_.find({message.writer, measured.id});
-    if (known == entries_.end() || known->second.measured != t) continue;
+    if (known == entries_.end() || known->second.track.stamp != t) continue;
     Entry& entry = known->second;
-    const double distance_squared = (entry.track.position - *vehicle_).squaredNorm();
+    const double distance_squared = (entry.track.value.position - *vehicle_).squaredNorm();
     const bool near = distance_squared < kLearned * kLearned;
     if (!near && entry.learned) {
       entry.learned.reset();
@@ -134,28 +133,28 @@ void TrackTable::learn(const TrackMessage& message, double t) {
       ++learned_;
     }
     if (!entry.learned) continue;
-    entry.learned->observe(t, measured, entry.track, measured.id, room_);
+    entry.learned->observe(t, measured, entry.track.value, measured.id, room_);
     if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
   }
   std::stable_sort(due.begin(), due.end(),
                    [](const Due& a, const Due& b) { return a.distance_squared < b.distance_squared; });
   if (due.size() > kFits) due.resize(kFits);
-  for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track);
+  for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track.value);
 }
 
 bool TrackTable::has_unexplained(double speed) const {
   if (!vehicle_) return false;
   return std::any_of(entries_.begin(), entries_.end(), [&](const auto& item) {
     const Entry& entry = item.second;
-    if (!entry.learned || entry.is_self || !entry.learned->unexplained(entry.measured)) return false;
-    const double reach = kMeeting * (speed + entry.track.velocity.norm());
-    return (entry.track.position - *vehicle_).squaredNorm() < reach * reach;
+    if (!entry.learned || entry.is_self || !entry.learned->unexplained(entry.track.stamp)) return false;
+    const double reach = kMeeting * (speed + entry.track.value.velocity.norm());
+    return (entry.track.value.position - *vehicle_).squaredNorm() < reach * reach;
   });
 }
 
 void TrackTable::forget(double now) {
   std::erase_if(entries_, [&](const auto& item) {
-    const bool gone = now - item.second.seen > coast_s_;
+    const bool gone = now - item.second.track.received > coast_s_;
     if (gone && item.second.learned) --learned_;
     return gone;
   });
@@ -166,11 +165,12 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
   own_tracks_ = 0;
   vehicle_ = position;
   for (auto& [key, entry] : entries_) {
-    const double age = std::max(0.0, now - entry.measured);
-    const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.position_sigma);
+    const double age = std::max(0.0, entry.track.age(now));
+    const double doubt = std::min(kSelfDoubt, kSelfSigmas * entry.track.value.position_sigma);
     const double near = (radius + doubt) * (entry.is_self ? kSelfLeaves : 1.0);
-    const bool here = (entry.track.position + age * entry.track.velocity - position).norm() < near &&
-                      (entry.track.velocity - velocity).norm() < kSelfSpeed && entry.track.radius <= kSelfSize * radius;
+    const bool here = (entry.track.value.position + age * entry.track.value.velocity - position).norm() < near &&
+                      (entry.track.value.velocity - velocity).norm() < kSelfSpeed &&
+                      entry.track.value.radius <= kSelfSize * radius;
     if (here && !entry.near_from) entry.near_from = position;
     if (!here) entry.near_from.reset();
     entry.is_self = here && (entry.is_self || (position - *entry.near_from).norm() > kSelfWay);
@@ -181,7 +181,7 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
 int TrackTable::live_writers(double now, double timeout_s) const {
   return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
     const Writer& writer = item.second;
-    return writer.sends_when_empty && writer.believed >= 0.0 && now - writer.believed <= timeout_s;
+    return writer.sends_when_empty && writer.believed && now - *writer.believed <= timeout_s;
   }));
 }
 
@@ -192,11 +192,11 @@ std::vector<planner::base::Track> TrackTable::predict(double now, double trust,
   tracks.reserve(entries_.size());
   for (const auto& [key, entry] : entries_) {
     if (entry.is_self) continue;
-    const double age = std::max(0.0, now - entry.measured);
-    planner::base::Track track = planner::geometry::predict(entry.track, age, trust);
+    const double age = std::max(0.0, entry.track.age(now));
+    planner::base::Track track = planner::geometry::predict(entry.track.value, age, trust);
     track.age = age;
     if (forecasts != nullptr && entry.learned) {
-      if (auto forecast = entry.learned->forecast(now, entry.measured, entry.track, room_)) {
+      if (auto forecast = entry.learned->forecast(now, entry.track.stamp, entry.track.value, room_)) {
         forecast->track = tracks.size();
         forecasts->push_back(std::move(*forecast));
       }

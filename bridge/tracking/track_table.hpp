@@ -58,8 +58,8 @@ class TrackTable {
   /// (MotionLearner::unexplained). As of the last messages.
   [[nodiscard]] bool has_unexplained(double speed) const;
 
-  /// Reception of the newest message of any writer that sends when it sees nothing; negative: none yet.
-  [[nodiscard]] double newest_message() const { return newest_message_; }
+  /// Reception of the newest message of any writer that sends when it sees nothing; none: none yet.
+  [[nodiscard]] std::optional<double> newest_message() const { return newest_message_; }
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
   /// Living tracks that are taken for the vehicle itself.
   [[nodiscard]] int own_tracks() const { return own_tracks_; }
@@ -76,11 +76,10 @@ class TrackTable {
 
  private:
   struct Entry {
-    planner::base::Track track;                          // as estimated from the measurements
-    double measured = 0.0;                               // companion's clock
-    std::unique_ptr<prediction::ImmFilter> filter;       // of a track that is measured with noise
+    base::Stamped<planner::base::Track, base::Frame::kLocal>
+        track;                                      // as estimated; stamped when measured, received in the last message
+    std::unique_ptr<prediction::ImmFilter> filter;  // of a track that is measured with noise
     std::unique_ptr<prediction::MotionLearner> learned;  // of a track that is near enough
-    double seen = 0.0;                                   // reception of the last message that held it
     std::optional<Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
   };
@@ -92,20 +91,20 @@ class TrackTable {
     ClockOffsetEstimator clock;
     std::vector<Seen> last;  // what the newest message that was taken in held
     double received = 0.0;
-    double believed = -1.0;  // reception of the newest message that was taken in
+    std::optional<double> believed;  // reception of the newest message that was taken in
     bool sends_when_empty = true;
   };
-  std::optional<double> delay_of(const TrackMessage& message);
+  std::optional<double> stamp_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
   void remember(const TrackMessage& message);
-  void take(Entry& entry, const planner::base::Track& measured, double t);
+  static void take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured);
   void learn(const TrackMessage& message, double t);
   void forget(double now);
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
 
   double coast_s_;
-  double newest_message_ = -1.0;
+  std::optional<double> newest_message_;
   TrackTableCounts counts_;
   int own_tracks_ = 0;
   std::map<std::uint64_t, Writer> writers_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "bridge/base/stamped.hpp"
 #include "bridge/frames/geodetic.hpp"
 #include "planner/base/types.hpp"
 
@@ -33,14 +34,12 @@ enum class BatteryState { kUnknown, kOk, kLow, kCritical };
 /// "ok", "low", ...: for people and logs.
 std::string_view to_string(BatteryState state);
 
-/// The newest of everything the autopilot has told. Stamps are in the companion's clock; negative: never heard.
+/// The newest of everything the autopilot has told. Stamps are in the companion's clock.
 struct VehicleState {
-  double heartbeat_stamp = -1.0;  ///< newest heartbeat, which carries armed and mode
+  double heartbeat_stamp = base::kNever;  ///< newest heartbeat, which carries armed and mode
   bool armed = false;
   FlightMode mode = FlightMode::kUnknown;
-  double position_stamp = -1.0;  ///< newest local position with velocity
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
+  base::Stamped<base::Kinematics, base::Frame::kLocal> motion;  ///< newest local position with velocity
   double yaw = 0.0;
   bool armable = false;            ///< the autopilot's own pre-arm checks pass
   bool local_position_ok = false;  ///< its estimator holds a local position

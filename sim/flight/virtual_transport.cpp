@@ -151,7 +151,7 @@ vehicle::Result VirtualLink::act(bridge::vehicle::Command command) {
 /// Stamps are those of its arrival, as a receiver has no others.
 void VirtualLink::deliver(const bridge::vehicle::VehicleState& state) {
   state_ = state;
-  state_.heartbeat_stamp = state_.position_stamp = now_;
+  state_.heartbeat_stamp = state_.motion.stamp = state_.motion.received = now_;
 }
 
 void VirtualLink::deliver(const AnswerPacket& answer) {
@@ -180,8 +180,7 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   bridge::vehicle::VehicleState state;
   state.armed = autopilot_.armed();
   state.mode = bridge_mode(autopilot_.mode());
-  state.position = motion.position;
-  state.velocity = motion.velocity;
+  state.motion.value = {motion.position, motion.velocity};
   state.yaw = motion.yaw;
   state.armable = autopilot_.prearm_ok();
   state.local_position_ok = autopilot_.position_valid();

@@ -17,10 +17,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)filter.update(*message, now);
     jink::bridge::vehicle::VehicleState state;
     filter.apply(state, now);
-    const bool finite = state.position.allFinite() && state.velocity.allFinite() && std::isfinite(state.yaw) &&
-                        state.estimate_shift.allFinite();
+    const bool finite = state.motion.value.position.allFinite() && state.motion.value.velocity.allFinite() &&
+                        std::isfinite(state.yaw) && state.estimate_shift.allFinite();
     jink::fuzz::require(finite, "a state that is not finite");
-    jink::fuzz::require(!state.local_position_ok || state.position_stamp >= 0.0, "a position that never came");
+    jink::fuzz::require(!state.local_position_ok || state.motion.stamp >= 0.0, "a position that never came");
     jink::fuzz::require(!state.origin || std::abs(state.origin->latitude_deg) <= 90.0, "an absurd origin");
   }
   return 0;

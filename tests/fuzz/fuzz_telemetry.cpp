@@ -76,13 +76,13 @@ class Companion {
 
   void check_state() {
     const jink::bridge::vehicle::VehicleState state = telemetry_.state(clock_.now());
-    const bool finite = state.position.allFinite() && state.velocity.allFinite() && std::isfinite(state.yaw) &&
-                        state.estimate_shift.allFinite();
+    const bool finite = state.motion.value.position.allFinite() && state.motion.value.velocity.allFinite() &&
+                        std::isfinite(state.yaw) && state.estimate_shift.allFinite();
     require(finite, "a state that is not finite");
     // A reset moves the estimate between two believable positions, and a flight has not many.
     const double most = 2.1 * jink::bridge::mavlink::Limits::kPosition * (1.0 + state.estimate_resets);
     require(state.estimate_shift.norm() <= most, "an absurd shift of the estimate");
-    require(!state.local_position_ok || state.position_stamp >= 0.0, "a position that never came");
+    require(!state.local_position_ok || state.motion.stamp >= 0.0, "a position that never came");
     require(!state.origin || std::abs(state.origin->latitude_deg) <= 90.0, "an absurd origin");
     const auto percent = telemetry_.info().battery_percent;
     require(!percent || (*percent >= 0.0 && *percent <= 100.0), "an absurd battery");

@@ -40,15 +40,16 @@ FlightProgress::FlightProgress(const config::Mission& mission, double stale_stat
 
 void FlightProgress::on_state(double t, const bridge::vehicle::VehicleState& state) {
   const double now = pace_ != nullptr ? pace_->now() : t;
-  position_ = state.position;
+  position_ = state.motion.value.position;
   if (!line_.due(now)) return;
-  const bool known = state.position_stamp >= 0.0;
+  const bool known = state.motion.heard();
   status_.t = t;
-  status_.mode = state.heartbeat_stamp < 0.0 ? "" : std::string(bridge::vehicle::to_string(state.mode));
+  status_.mode =
+      state.heartbeat_stamp == bridge::base::kNever ? "" : std::string(bridge::vehicle::to_string(state.mode));
   if (known) {
-    status_.speed = state.velocity.norm();
-    status_.height = state.position.z();
-    find_progress(state.position);
+    status_.speed = state.motion.value.velocity.norm();
+    status_.height = state.motion.value.position.z();
+    find_progress(state.motion.value.position);
   }
   find_stale(t, state);
   line_.show(progress_text(status_));
@@ -68,15 +69,15 @@ void FlightProgress::find_progress(const Vec3& position) {
 void FlightProgress::find_stale(double t, const bridge::vehicle::VehicleState& state) {
   status_.stale.clear();
   const auto old = [](const char* what, double age) { return fmt::format("{} {:.1f} s old", what, age); };
-  if (state.heartbeat_stamp < 0.0) {
+  if (state.heartbeat_stamp == bridge::base::kNever) {
     status_.stale.emplace_back("no autopilot yet");
   } else if (t - state.heartbeat_stamp > kOldHeartbeat) {
     status_.stale.push_back(old("heartbeat", t - state.heartbeat_stamp));
-  } else if (state.position_stamp < 0.0) {
+  } else if (!state.motion.heard()) {
     status_.stale.emplace_back("no position yet");
   }
-  if (state.position_stamp >= 0.0 && t - state.position_stamp > stale_state_)
-    status_.stale.push_back(old("position", t - state.position_stamp));
+  if (state.motion.heard() && state.motion.age(t) > stale_state_)
+    status_.stale.push_back(old("position", state.motion.age(t)));
   if (!last_tracks_) {
     if (mission_.tracks.required) status_.stale.emplace_back("no tracks yet");
   } else if (t - *last_tracks_ > mission_.tracks.timeout_s) {

@@ -143,7 +143,7 @@ void FlightLog::end_line() {
 }
 
 void FlightLog::write_content(double t, const bridge::vehicle::VehicleState& state) {
-  begin("state", t).key("p").vector(state.position).key("v").vector(state.velocity);
+  begin("state", t).key("p").vector(state.motion.value.position).key("v").vector(state.motion.value.velocity);
   line_.key("armed").flag(state.armed).key("mode").text(bridge::vehicle::to_string(state.mode));
   end_line();
 }

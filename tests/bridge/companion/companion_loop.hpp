@@ -34,15 +34,15 @@ struct Loop {
   bool turn() {
     vehicle::VehicleState& state = link.telemetry;
     if (heartbeats) state.heartbeat_stamp = now;
-    if (positions) state.position_stamp = now;
-    if (tracks) source.messages.push_back({1, now, 0.0, seen, 0});
+    if (positions) state.motion.stamp = now;
+    if (tracks) source.messages.push_back({{1, now, 0.0}, seen, 0});
     const bool on = companion.step(now);
     if (obeys) obey();
     const bool flies = state.armed && state.mode == vehicle::FlightMode::kOffboard && !link.sent.empty() && follows;
     if (flies) {
-      state.position = link.sent.back().position;
-      state.velocity = link.sent.back().velocity;
-      state.in_air = state.in_air || state.position.z() > 0.2;
+      state.motion.value.position = link.sent.back().position;
+      state.motion.value.velocity = link.sent.back().velocity;
+      state.in_air = state.in_air || state.motion.value.position.z() > 0.2;
     }
     now += kTurn;
     return on;
@@ -54,7 +54,8 @@ struct Loop {
       if (command == vehicle::Command::kArm) link.telemetry.armed = true;
       if (command == vehicle::Command::kHold) link.telemetry.mode = vehicle::FlightMode::kHold;
       if (command == vehicle::Command::kLand) link.telemetry.mode = vehicle::FlightMode::kLand;
-      if (command == vehicle::Command::kHold || command == vehicle::Command::kLand) link.telemetry.velocity.setZero();
+      if (command == vehicle::Command::kHold || command == vehicle::Command::kLand)
+        link.telemetry.motion.value.velocity.setZero();
     }
   }
   void run(double seconds) {
@@ -63,7 +64,7 @@ struct Loop {
   }
   Loop& airborne(const Vec3& position = {0, 0, 2}) {
     link.telemetry.in_air = link.telemetry.armed = true;
-    link.telemetry.position = position;
+    link.telemetry.motion.value.position = position;
     return *this;
   }
   /// Until plans are flown.

@@ -35,7 +35,7 @@ TEST(Companion, FliesAMissionFromTheGroundToHold) {
 TEST(Companion, TakesOffAboveWhereItStands) {
   Loop loop;
   loop.follows = false;
-  loop.link.telemetry.position = {3, 4, 0.5};
+  loop.link.telemetry.motion.value.position = {3, 4, 0.5};
   loop.run(1.0);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
   EXPECT_EQ(loop.last().position, Vec3(3, 4, 2.5));
@@ -147,7 +147,7 @@ TEST(Companion, LooksForAWayRoundWhereItComesNoNearer) {
   const double begun = loop.planner.jobs.front().begun;
   loop.run(6.0);
   const double moved = loop.now;
-  loop.link.telemetry.position.x() += 1.0;
+  loop.link.telemetry.motion.value.position.x() += 1.0;
   loop.run(1.0);
   for (const PlanJob& job : loop.planner.jobs) {
     EXPECT_EQ(job.request.stuck, job.begun > begun + 3.99 && job.begun < moved) << job.begun - begun;
@@ -193,7 +193,7 @@ TEST(Companion, PlansFromWhereTheReferenceWillBe) {
   ASSERT_FALSE(job.previous.empty());
   EXPECT_NEAR(job.previous.front().t, 0.0, 1e-9);
   ASSERT_EQ(job.tracks.size(), 1U);
-  EXPECT_NEAR(job.tracks[0].position.y(), 5.0 - (job.start - job.newest_track), 1e-9);
+  EXPECT_NEAR(job.tracks[0].position.y(), 5.0 - (job.start - job.newest_track.value()), 1e-9);
 }
 
 TEST(Companion, CountsALatePlanAsAMiss) {
@@ -235,7 +235,7 @@ TEST(Companion, EngagingInTheAirDoesNotCallTheVehicleBack) {
   loop.airborne();
   loop.obeys = false;
   for (int i = 0; i < 50; ++i) {
-    loop.link.telemetry.position.x() = 4.0 * loop.now;  // a pilot flies it
+    loop.link.telemetry.motion.value.position.x() = 4.0 * loop.now;  // a pilot flies it
     loop.turn();
   }
   EXPECT_NEAR(loop.last().position.x(), 4.0 * (loop.now - Loop::kTurn), 1e-9);
@@ -262,18 +262,19 @@ TEST(Companion, PlansFromTheVehicleWhereTrackingIsLostAndSaysItOnce) {
   Loop loop;
   loop.airborne().fly();
   loop.follows = false;
-  loop.link.telemetry.position += Vec3(0, 2.5, 0);
-  loop.link.telemetry.velocity = {0.5, 0.5, 0};
+  loop.link.telemetry.motion.value.position += Vec3(0, 2.5, 0);
+  loop.link.telemetry.motion.value.velocity = {0.5, 0.5, 0};
   const std::size_t jobs = loop.planner.jobs.size();
   while (loop.planner.jobs.size() == jobs) loop.turn();
   const PlanJob& job = loop.planner.jobs.back();
-  const Vec3 then = loop.link.telemetry.position + (job.start - job.begun) * loop.link.telemetry.velocity;
+  const Vec3 then =
+      loop.link.telemetry.motion.value.position + (job.start - job.begun) * loop.link.telemetry.motion.value.velocity;
   EXPECT_LT((job.request.position - then).norm(), 0.05);  // where it will be when the plan starts
   EXPECT_EQ(job.request.velocity, Vec3(0.5, 0.5, 0));
   EXPECT_TRUE(job.previous.empty());
   EXPECT_EQ(loop.recorder.count("reference_lost"), 1);
   for (int i = 0; i < 25; ++i) {  // it drifts off ahead of every plan
-    loop.link.telemetry.position += Vec3(0, 0.3, 0);
+    loop.link.telemetry.motion.value.position += Vec3(0, 0.3, 0);
     loop.turn();
   }
   EXPECT_GT(loop.planner.jobs.size(), jobs + 3);
@@ -290,7 +291,7 @@ TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   const std::size_t jobs = loop.planner.jobs.size();
   const std::size_t sent = loop.link.sent.size();
   const double woken = loop.now - Loop::kTurn + 0.006;
-  loop.source.messages.push_back({1, woken, 0.0, {}, 0});
+  loop.source.messages.push_back({{1, woken, 0.0}, {}, 0});
   loop.companion.step(woken);
   ASSERT_EQ(loop.planner.jobs.size(), jobs + 1);
   EXPECT_EQ(loop.link.sent.size(), sent);  // no setpoint out of turn without a reason
@@ -306,8 +307,8 @@ TEST(Companion, DoesNotFleeFromItsOwnTrack) {
     planner::base::Track own;
     own.id = 9;
     own.radius = 0.3;
-    own.position = loop.link.telemetry.position + Vec3(0.05, 0, 0);
-    own.velocity = loop.link.telemetry.velocity;
+    own.position = loop.link.telemetry.motion.value.position + Vec3(0.05, 0, 0);
+    own.velocity = loop.link.telemetry.motion.value.velocity;
     loop.seen = {own};
     loop.turn();
   }

@@ -109,8 +109,8 @@ TEST(Companion, AnInterruptInTheClimbStopsTheClimb) {
   loop.follows = false;
   loop.run(1.0);
   ASSERT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
-  loop.link.telemetry.position = {0, 0, 0.8};
-  loop.link.telemetry.velocity = {0, 0, 0.6};
+  loop.link.telemetry.motion.value.position = {0, 0, 0.8};
+  loop.link.telemetry.motion.value.velocity = {0, 0, 0.6};
   loop.link.telemetry.in_air = true;
   loop.turn();
   EXPECT_EQ(loop.last().position.z(), 2.0);
@@ -124,7 +124,7 @@ TEST(Companion, AClimbGoesOnAfterAHazard) {
   Loop loop;
   loop.follows = false;
   loop.run(1.0);
-  loop.link.telemetry.position = {0, 0, 0.8};
+  loop.link.telemetry.motion.value.position = {0, 0, 0.8};
   loop.link.telemetry.in_air = true;
   loop.tracks = false;
   loop.run(1.5);
@@ -143,7 +143,7 @@ TEST(Companion, BrakesAtTheVehicleWhereTrackingIsLost) {
   Loop lost;
   lost.airborne().fly();
   lost.follows = false;
-  lost.link.telemetry.position += Vec3(0, 2.5, 0);
+  lost.link.telemetry.motion.value.position += Vec3(0, 2.5, 0);
   lost.companion.interrupt(lost.now);
   lost.run(0.2);
   EXPECT_NEAR(lost.last().position.y(), 2.5, 0.1);
@@ -155,7 +155,7 @@ TEST(Companion, AJumpOfTheEstimateShiftsThePlan) {
   loop.run(1.0);
   const vehicle::Setpoint before = loop.last();
   const Vec3 jump(-3, 1, 0.5);
-  loop.link.telemetry.position += jump;
+  loop.link.telemetry.motion.value.position += jump;
   loop.link.telemetry.estimate_shift += jump;
   ++loop.link.telemetry.estimate_resets;
   loop.turn();
@@ -175,8 +175,8 @@ TEST(Companion, TheMarginGrowsWithTheTrackingErrorAndComesBack) {
   loop.airborne().fly();
   EXPECT_EQ(loop.planner.jobs.back().request.margin, config::Settings{}.horizon.margin);
   loop.follows = false;
-  loop.link.telemetry.position = loop.last().position + Vec3(0, 0.6, 0);
-  loop.link.telemetry.velocity = loop.last().velocity;
+  loop.link.telemetry.motion.value.position = loop.last().position + Vec3(0, 0.6, 0);
+  loop.link.telemetry.motion.value.velocity = loop.last().velocity;
   loop.turn();
   loop.follows = true;
   loop.run(0.2);
@@ -265,7 +265,7 @@ TEST(Companion, SaysThatAWritersClockIsOff) {
   loop.tracks = false;
   loop.airborne();
   for (int i = 0; i < 100; ++i) {
-    loop.source.messages.push_back({1, loop.now, -3600.0, {}, 0});
+    loop.source.messages.push_back({{1, loop.now, -3600.0}, {}, 0});
     loop.turn();
   }
   EXPECT_EQ(loop.recorder.count("tracks_clock"), 1);

@@ -179,13 +179,13 @@ VehicleState state_of(const LocalPositionFilter& filter, double now) {
 
 TEST(Px4LocalPositionFilter, GivesTheStateInEnu) {
   LocalPositionFilter filter;
-  EXPECT_EQ(state_of(filter, 3.0).position_stamp, -1.0);
+  EXPECT_FALSE(state_of(filter, 3.0).motion.heard());
   EXPECT_FALSE(state_of(filter, 3.0).local_position_ok);
   ASSERT_TRUE(filter.update(*decode_local_position(new_payload()), 2.5));
   const VehicleState s = state_of(filter, 3.0);
-  EXPECT_EQ(s.position_stamp, 2.5);
-  EXPECT_EQ(s.position, Vec3(2, 5, 10));
-  EXPECT_EQ(s.velocity, Vec3(2, 1, -0.5));
+  EXPECT_EQ(s.motion.stamp, 2.5);
+  EXPECT_EQ(s.motion.value.position, Vec3(2, 5, 10));
+  EXPECT_EQ(s.motion.value.velocity, Vec3(2, 1, -0.5));
   EXPECT_NEAR(s.yaw, 0.0, 1e-6);  // east
   EXPECT_TRUE(s.local_position_ok);
   EXPECT_EQ(s.health, "dead reckoning");
@@ -204,8 +204,8 @@ TEST(Px4LocalPositionFilter, LetsTheStampAgeWhereAnythingIsNotValid) {
     bad.position_ned = {kNaN, 7.0, 7.0};  // what is not valid may be anything
     ASSERT_TRUE(filter.update(bad, 1.1));
     const VehicleState s = state_of(filter, 1.1);
-    EXPECT_EQ(s.position_stamp, 1.0);
-    EXPECT_EQ(s.position, Vec3::Zero());
+    EXPECT_EQ(s.motion.stamp, 1.0);
+    EXPECT_EQ(s.motion.value.position, Vec3::Zero());
     EXPECT_FALSE(s.local_position_ok);
     EXPECT_EQ(s.health, "local position");
   }
@@ -241,7 +241,7 @@ TEST(Px4LocalPositionFilter, RefusesValuesThatCannotBe) {
   bad[6].global = true;
   bad[6].origin.altitude_m = kNaN;
   for (const LocalPosition& m : bad) EXPECT_FALSE(filter.update(m, 2.0));
-  EXPECT_EQ(state_of(filter, 2.0).position_stamp, 1.0);
+  EXPECT_EQ(state_of(filter, 2.0).motion.stamp, 1.0);
 }
 
 TEST(Px4LocalPositionFilter, CountsAJumpByWhatTheMessageSays) {
@@ -317,28 +317,28 @@ class Px4Dds : public ::testing::Test {
 TEST_F(Px4Dds, TakesPositionsFromPx4sWritersAndTheRestFromTheLinkUnderneath) {
   under_.underlying.armed = true;
   under_.underlying.heartbeat_stamp = 4.0;
-  under_.underlying.position = {100, 100, 100};
-  under_.underlying.position_stamp = 4.5;
+  under_.underlying.motion.value.position = {100, 100, 100};
+  under_.underlying.motion.stamp = 4.5;
   under_.underlying.health = "gyroscope, local position";
   auto dds = link({.state = true, .setpoints = false, .name_space = "px4_1"});
-  EXPECT_EQ(dds.state().position_stamp, -1.0);
+  EXPECT_FALSE(dds.state().motion.heard());
   EXPECT_EQ(dds.state().health, "gyroscope, local position");
   auto writer = position_writer("rt/px4_1/fmu/out/vehicle_local_position_v1", {.transient_local = true});
   auto other_namespace = position_writer("rt/fmu/out/vehicle_local_position_v1", {.transient_local = true});
   ASSERT_TRUE(eventually([&] { return dds.counts().position_writers == 1 && writer.readers() == 1; }));
   clock_.set(5.0);
   ASSERT_TRUE(writer.write(new_payload()));
-  ASSERT_TRUE(eventually([&] { return dds.state().position_stamp == 5.0; }));
+  ASSERT_TRUE(eventually([&] { return dds.state().motion.stamp == 5.0; }));
   clock_.set(5.2);
   const VehicleState s = dds.state();
-  EXPECT_EQ(s.position, Vec3(2, 5, 10));
+  EXPECT_EQ(s.motion.value.position, Vec3(2, 5, 10));
   EXPECT_TRUE(s.local_position_ok);
   EXPECT_TRUE(s.armed);
   EXPECT_EQ(s.heartbeat_stamp, 4.0);
   EXPECT_EQ(s.health, "gyroscope, dead reckoning");
   EXPECT_EQ(other_namespace.readers(), 0);
   clock_.set(60.0);  // silence
-  EXPECT_EQ(dds.state().position_stamp, 5.0);
+  EXPECT_EQ(dds.state().motion.stamp, 5.0);
   EXPECT_FALSE(dds.state().local_position_ok);
 
   const Setpoint setpoint{.position = {1, 2, 3}};
@@ -369,7 +369,7 @@ TEST_F(Px4Dds, CountsPayloadsAndValuesThatAreNone) {
   absurd.x(kNaNf);
   ASSERT_TRUE(writer.write(new_payload(absurd)));
   EXPECT_TRUE(eventually([&] { return dds.counts().dropped == 1; }));
-  EXPECT_EQ(dds.state().position_stamp, -1.0);
+  EXPECT_FALSE(dds.state().motion.heard());
   ASSERT_TRUE(writer.write(new_payload()));
   EXPECT_TRUE(eventually([&] { return dds.counts().positions == 1; }));
 }
@@ -388,11 +388,11 @@ TEST_F(Px4Dds, NeverMixesTwoAutopilots) {
   clock_.set(1.4);
   ASSERT_TRUE(second.write(new_payload(elsewhere)));
   ASSERT_TRUE(eventually([&] { return dds.counts().other_writers == 1; }));
-  EXPECT_EQ(dds.state().position, Vec3(2, 5, 10));
-  EXPECT_EQ(dds.state().position_stamp, 1.0);
+  EXPECT_EQ(dds.state().motion.value.position, Vec3(2, 5, 10));
+  EXPECT_EQ(dds.state().motion.stamp, 1.0);
   clock_.set(1.0 + DdsVehicleLink::kWriterSilence_s);
   ASSERT_TRUE(second.write(new_payload(elsewhere)));
-  EXPECT_TRUE(eventually([&] { return dds.state().position == Vec3(2, 50, 10); }));
+  EXPECT_TRUE(eventually([&] { return dds.state().motion.value.position == Vec3(2, 50, 10); }));
 }
 
 TEST_F(Px4Dds, SendsSetpointsAsPx4TakesThem) {
@@ -453,8 +453,8 @@ TEST_P(Px4DdsOtherVendor, ExchangesStateAndSetpoints) {
                      "--version", std::to_string(GetParam())});
   ASSERT_TRUE(eventually([&] { return link.counts().positions > 0; }, std::chrono::seconds(60)));
   const VehicleState s = link.state();
-  EXPECT_EQ(s.position, Vec3(2, 5, 10));
-  EXPECT_EQ(s.velocity, Vec3(2, 1, -0.5));
+  EXPECT_EQ(s.motion.value.position, Vec3(2, 5, 10));
+  EXPECT_EQ(s.motion.value.velocity, Vec3(2, 1, -0.5));
   EXPECT_TRUE(s.local_position_ok);
   ASSERT_TRUE(s.origin);
   EXPECT_EQ(s.origin->longitude_deg, 8.545594);

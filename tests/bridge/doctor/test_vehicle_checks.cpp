@@ -36,7 +36,7 @@ LinkFindings healthy() {
   LinkFindings h;
   h.autopilot = true;
   h.state.armable = h.state.local_position_ok = true;
-  h.state.position_stamp = 1.0;
+  h.state.motion.stamp = 1.0;
   h.state.mode = FlightMode::kHold;
   h.state.battery = BatteryState::kOk;
   h.state.origin = {47.4, 8.5, 488.0};
@@ -164,7 +164,7 @@ TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
   LinkFindings h = healthy();
   for (std::size_t i = 1; i < h.rates.size(); ++i) h.rates[i].count = 0;
   EXPECT_EQ(bad_ones(inspect_link(m, h)), "");
-  h.state.position_stamp = -1.0;
+  h.state.motion.stamp = jink::bridge::base::kNever;
   EXPECT_EQ(find(inspect_mission(m, h), "local position").level, Level::kWarning);
 }
 
@@ -194,17 +194,20 @@ TEST(Doctor, KnowsWhatTheParametersDo) {
 
 TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
   const std::vector<Case> of_vehicle{
-      {"local position", Level::kFault, "never heard", [](LinkFindings& h) { h.state.position_stamp = -1.0; }},
+      {"local position", Level::kFault, "never heard",
+       [](LinkFindings& h) { h.state.motion.stamp = jink::bridge::base::kNever; }},
       {"local position", Level::kFault, "not valid", [](LinkFindings& h) { h.state.local_position_ok = false; }},
-      {"local position", Level::kWarning, "5.0 m above", [](LinkFindings& h) { h.state.position.z() = 5.0; }},
+      {"local position", Level::kWarning, "5.0 m above",
+       [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},
       {"origin", Level::kWarning, "not told", [](LinkFindings& h) { h.state.origin.reset(); }},
       {"origin", Level::kWarning, "0.000000",
        [](LinkFindings& h) {
          h.state.origin = {0.0, 0.0, 0.0};
        }},
       {"geofence", Level::kFault, "does not contain the vehicle",
-       [](LinkFindings& h) { h.state.position.x() = -60.0; }},
-      {"geofence", Level::kFault, "take-off leads to 20.5", [](LinkFindings& h) { h.state.position.z() = 19.0; }},
+       [](LinkFindings& h) { h.state.motion.value.position.x() = -60.0; }},
+      {"geofence", Level::kFault, "take-off leads to 20.5",
+       [](LinkFindings& h) { h.state.motion.value.position.z() = 19.0; }},
   };
   for (const Case& c : of_vehicle) {
     LinkFindings h = healthy();

@@ -122,7 +122,7 @@ TEST(AutopilotTelemetry, AnOlderPositionIsLeftOutAndTimeThatBeganAnewIsAReboot) 
   EXPECT_TRUE(telemetry.on(10.0, LocalPosition{60000, Vec3(1, 0, 0), Vec3::Zero()}));
   telemetry.on(Origin{{47.0, 8.0, 400.0}});
   EXPECT_FALSE(telemetry.on(10.1, LocalPosition{59900, Vec3(9, 0, 0), Vec3::Zero()}));
-  EXPECT_EQ(telemetry.state(10.1).position, Vec3(1, 0, 0));
+  EXPECT_EQ(telemetry.state(10.1).motion.value.position, Vec3(1, 0, 0));
   EXPECT_EQ(telemetry.counts().late, 1U);
   EXPECT_TRUE(telemetry.on(10.2, LocalPosition{500, Vec3(0, 0, 0), Vec3::Zero()}));
   EXPECT_EQ(telemetry.state(10.2).reboots, 1U);

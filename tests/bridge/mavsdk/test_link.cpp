@@ -42,18 +42,18 @@ using nlohmann::json;
 TEST_F(MavsdkLinkTest, StateArrivesInEnu) {
   connect();
   ASSERT_TRUE(state_becomes([](const VehicleState& s) {
-    return s.position_stamp >= 0 && s.heartbeat_stamp >= 0 && s.yaw != 0.0 && s.armable;
+    return s.motion.stamp >= 0 && s.heartbeat_stamp >= 0 && s.yaw != 0.0 && s.armable;
   }));
   const VehicleState s = link_->state();
-  EXPECT_EQ(s.position, Vec3(2.0, 1.0, 3.0));            // NED 1, 2, -3
-  EXPECT_EQ(s.velocity, Vec3(-0.25, 0.5, -0.125));       // NED 0.5, -0.25, 0.125
-  EXPECT_NEAR(s.yaw, std::numbers::pi / 2 - 0.3, 1e-6);  // 0.3 east of north
+  EXPECT_EQ(s.motion.value.position, Vec3(2.0, 1.0, 3.0));       // NED 1, 2, -3
+  EXPECT_EQ(s.motion.value.velocity, Vec3(-0.25, 0.5, -0.125));  // NED 0.5, -0.25, 0.125
+  EXPECT_NEAR(s.yaw, std::numbers::pi / 2 - 0.3, 1e-6);          // 0.3 east of north
   EXPECT_EQ(s.mode, FlightMode::kHold);
   EXPECT_FALSE(s.armed);
   EXPECT_FALSE(s.in_air);
   EXPECT_TRUE(s.local_position_ok);
   EXPECT_EQ(s.health, "");
-  EXPECT_LE(s.position_stamp, clock_.now());
+  EXPECT_LE(s.motion.stamp, clock_.now());
   EXPECT_EQ(link_->autopilot_system_id(), 1U);
   EXPECT_EQ(link_->counts().malformed, 0U);
 }
@@ -89,7 +89,7 @@ TEST_F(MavsdkLinkTest, AsksAgainWhenTheAnswerToTheRateWasNo) {
 
 TEST_F(MavsdkLinkTest, HeartbeatStampFollowsHeartbeatsAlone) {
   connect();
-  ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.heartbeat_stamp >= 0 && s.position_stamp >= 0; }));
+  ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.heartbeat_stamp >= 0 && s.motion.stamp >= 0; }));
   const double first = link_->state().heartbeat_stamp;
   ASSERT_TRUE(state_becomes([&](const VehicleState& s) { return s.heartbeat_stamp > first; }));
   EXPECT_NEAR(link_->state().heartbeat_stamp - first, 1.0, 0.5);
@@ -102,14 +102,14 @@ TEST_F(MavsdkLinkTest, SilenceStopsTheStampsAndThePositionIsGoodNoMore) {
   peer_->order("freeze");
   ASSERT_TRUE(state_becomes([](const VehicleState& s) { return !s.local_position_ok; }));
   const VehicleState silent = link_->state();
-  EXPECT_GT(clock_.now() - silent.position_stamp, MavsdkLink::kPositionMaxAge_s);
+  EXPECT_GT(clock_.now() - silent.motion.stamp, MavsdkLink::kPositionMaxAge_s);
   EXPECT_EQ(silent.health, "local position");
-  EXPECT_EQ(silent.position, Vec3(2.0, 1.0, 3.0));
+  EXPECT_EQ(silent.motion.value.position, Vec3(2.0, 1.0, 3.0));
   // Longer than MAVSDK's own time-out for a system (3 s): it must be found again by itself.
   std::this_thread::sleep_for(std::chrono::seconds(4));
   peer_->order("thaw");
   EXPECT_TRUE(state_becomes(
-      [&](const VehicleState& s) { return s.local_position_ok && s.heartbeat_stamp > silent.position_stamp + 4.0; }));
+      [&](const VehicleState& s) { return s.local_position_ok && s.heartbeat_stamp > silent.motion.stamp + 4.0; }));
   EXPECT_TRUE(link_->send(Setpoint{}));
 }
 

@@ -35,7 +35,7 @@ class MavsdkFaultTest : public jink::bridge::testing::MavsdkLinkTest {
   // Connected, with a position and odometry flowing.
   void fly(const std::vector<std::string>& peer_options = {}) {
     connect(peer_options);
-    ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.position_stamp >= 0 && s.armable; }));
+    ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.motion.stamp >= 0 && s.armable; }));
     const bool odometry = std::find(peer_options.begin(), peer_options.end(), "--no-odometry") == peer_options.end();
     ASSERT_TRUE(eventually([&] { return link_->counts().odometries >= (odometry ? 2U : 0U); }));
   }
@@ -61,7 +61,7 @@ TEST_F(MavsdkFaultTest, EstimateResetsAreCountedAndMeasured) {
   EXPECT_EQ(link_->state().estimate_resets, 0U);
   peer_->order("jump 3 0 0");  // counter 254 -> 255
   expect_shift(1, {0.0, 3.0, 0.0});
-  EXPECT_EQ(link_->state().position, Vec3(2.0, 4.0, 3.0));
+  EXPECT_EQ(link_->state().motion.value.position, Vec3(2.0, 4.0, 3.0));
   peer_->order("jump 0 0.4 -0.2");  // 255 -> 0; too little to be seen without the counter
   expect_shift(2, {0.4, 3.0, 0.2});
   peer_->order("jump -2 0 0 2");
@@ -154,7 +154,8 @@ TEST_F(MavsdkFaultTest, ASecondAutopilotChangesNothingAndIsSaid) {
   const auto heartbeats = link_->counts().heartbeats;
   ASSERT_TRUE(eventually([&] { return link_->counts().heartbeats >= heartbeats + 5; }));
   const VehicleState s = link_->state();
-  EXPECT_EQ(s.position, before.position);  // the other one is elsewhere, armed, landing, in failsafe
+  EXPECT_EQ(s.motion.value.position,
+            before.motion.value.position);  // the other one is elsewhere, armed, landing, in failsafe
   EXPECT_FALSE(s.armed);
   EXPECT_FALSE(s.failsafe);
   EXPECT_EQ(s.mode, FlightMode::kHold);
@@ -172,7 +173,7 @@ TEST_F(MavsdkFaultTest, RandomBytesAreNothing) {
   const auto positions = link_->counts().positions;
   ASSERT_TRUE(eventually([&] { return link_->counts().positions >= positions + 50; }));
   const VehicleState s = link_->state();
-  EXPECT_EQ(s.position, Vec3(2.0, 1.0, 3.0));
+  EXPECT_EQ(s.motion.value.position, Vec3(2.0, 1.0, 3.0));
   EXPECT_EQ(s.estimate_resets, 0U);
   EXPECT_EQ(link_->counts().other_autopilots, 0U);
   EXPECT_TRUE(link_->send(Setpoint{}));
@@ -214,7 +215,7 @@ TEST_F(MavsdkFaultTest, AfterFiveSilentSecondsMessagesComeAndGoWithoutAHeartbeat
   peer_->order("stop HEARTBEAT");
   const VehicleState silent = link_->state();
   peer_->order("thaw");
-  EXPECT_TRUE(state_becomes([&](const VehicleState& s) { return s.position_stamp > silent.position_stamp; }));
+  EXPECT_TRUE(state_becomes([&](const VehicleState& s) { return s.motion.stamp > silent.motion.stamp; }));
   EXPECT_TRUE(state_becomes([&](const VehicleState& s) { return s.local_position_ok; }));
   EXPECT_EQ(link_->state().heartbeat_stamp, silent.heartbeat_stamp);
   EXPECT_EQ(link_->state().estimate_resets, 0U);

@@ -34,11 +34,11 @@ struct Flight {
   /// One turn; what was frozen keeps its stamp.
   supervisor::Decision turn() {
     if (heartbeats) state.heartbeat_stamp = now;
-    if (positions) state.position_stamp = now;
-    if (tracks) picture.newest_tracks = now;
-    if (plans) picture.newest_plan = now;
-    const supervisor::Decision decision = supervisor.update(now, state, picture);
-    picture.report.reset();
+    if (positions) state.motion.stamp = now;
+    if (tracks) context.newest_tracks = now;
+    if (plans) context.newest_plan = now;
+    const supervisor::Decision decision = supervisor.update(now, state, context);
+    context.report.reset();
     if (decision.request) requests.push_back(*decision.request);
     now += kTurn;
     return decision;
@@ -50,7 +50,7 @@ struct Flight {
     return last;
   }
   void refuse(vehicle::Command command, const std::string& detail) {
-    picture.report = vehicle::CommandReport{command, false, detail};
+    context.report = vehicle::CommandReport{command, false, detail};
   }
   [[nodiscard]] int asked(vehicle::Command command) const {
     return static_cast<int>(std::count(requests.begin(), requests.end(), command));
@@ -72,7 +72,7 @@ struct Flight {
   Flight& fly() {
     climb();
     state.in_air = true;
-    picture.at_takeoff_height = true;
+    context.at_takeoff_height = true;
     turn();
     return *this;
   }
@@ -84,7 +84,7 @@ struct Flight {
 
   supervisor::Supervisor supervisor;
   vehicle::VehicleState state;
-  supervisor::FlightPicture picture;
+  supervisor::FlightContext context;
   std::vector<vehicle::Command> requests;
   double now = 10.0;
   bool heartbeats = true, positions = true, tracks = true, plans = true;

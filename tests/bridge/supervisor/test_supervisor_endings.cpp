@@ -19,7 +19,7 @@ TEST(Supervisor, InterruptInTheLandingEndsInHold) {
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
   flight.fly();
-  flight.picture.at_target = true;
+  flight.context.at_target = true;
   flight.turn();
   flight.turn();
   flight.state.mode = vehicle::FlightMode::kLand;
@@ -41,7 +41,7 @@ TEST(Supervisor, TheTimeLimitEndsInHold) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
   flight.run(1.0);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kStopping);
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   flight.run(1.0);
   EXPECT_EQ(flight.requests.back(), vehicle::Command::kHold);
   flight.state.mode = vehicle::FlightMode::kHold;
@@ -52,7 +52,7 @@ TEST(Supervisor, TheTimeLimitEndsInHold) {
 
 TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
   Flight flight;
-  flight.fly().picture.at_target = true;
+  flight.fly().context.at_target = true;
   flight.turn();
   EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
   EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
@@ -65,7 +65,7 @@ TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
   Flight flight;
   flight.fly().positions = false;
   flight.run(0.6);
-  flight.picture.at_target = true;
+  flight.context.at_target = true;
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
@@ -74,7 +74,7 @@ TEST(Supervisor, ArrivalByLandingIsReachedOnTheGroundDisarmed) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().picture.at_target = true;
+  flight.fly().context.at_target = true;
   flight.turn();
   EXPECT_EQ(flight.turn().request, vehicle::Command::kLand);
   flight.state.mode = vehicle::FlightMode::kLand;
@@ -94,7 +94,7 @@ TEST(Supervisor, ALandingTakenOverIsNoArrival) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().picture.at_target = true;
+  flight.fly().context.at_target = true;
   flight.run(0.1);
   flight.state.mode = vehicle::FlightMode::kLand;
   flight.run(1.0);
@@ -108,7 +108,7 @@ TEST(Supervisor, ALandingThatDoesNotEndIsReported) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().picture.at_target = true;
+  flight.fly().context.at_target = true;
   flight.run(0.1);
   flight.state.mode = vehicle::FlightMode::kLand;
   flight.run(95.0);
@@ -120,7 +120,7 @@ TEST(Supervisor, ALandingThatIsRefusedEndsInHold) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().picture.at_target = true;
+  flight.fly().context.at_target = true;
   flight.turn();
   while (flight.asked(vehicle::Command::kHold) == 0 && flight.now < 60.0) {
     flight.refuse(vehicle::Command::kLand, "denied");
@@ -137,9 +137,9 @@ TEST(Supervisor, HoldNeverConfirmedIsAskedForAgainAndThenSaid) {
   for (const bool arrived : {true, false}) {
     SCOPED_TRACE(arrived);
     Flight flight;
-    flight.fly().picture.at_rest = true;
+    flight.fly().context.at_rest = true;
     if (arrived) {
-      flight.picture.at_target = true;
+      flight.context.at_target = true;
     } else {
       flight.supervisor.stop(flight.now, Outcome::kTimeout, "too late");
     }
@@ -163,7 +163,7 @@ TEST(Supervisor, StoppingWaitsForRestButNotForEver) {
   flight.run(1.0);
   EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
   Flight rests;
-  rests.stop().picture.at_rest = true;
+  rests.stop().context.at_rest = true;
   rests.run(0.25);
   EXPECT_EQ(rests.asked(vehicle::Command::kHold), 0);
   rests.run(0.2);
@@ -174,7 +174,7 @@ TEST(Supervisor, TheFirstReasonToStopStands) {
   Flight flight;
   flight.stop().turn();
   flight.supervisor.stop(flight.now, Outcome::kTimeout, "later");
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   flight.run(0.5);
   flight.state.mode = vehicle::FlightMode::kHold;
   flight.turn();

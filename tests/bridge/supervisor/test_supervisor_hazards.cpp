@@ -18,7 +18,7 @@ using testing::Flight;
 
 TEST(Supervisor, ClimbEndsAtTheHeightOnlyWhenTheAutopilotIsInTheAir) {
   Flight flight;
-  flight.climb().picture.at_takeoff_height = true;
+  flight.climb().context.at_takeoff_height = true;
   flight.run(1.0);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kClimbing);
   flight.state.in_air = true;
@@ -45,7 +45,7 @@ TEST(Supervisor, InterruptInTheClimbBrakesAndHolds) {
   flight.run(1.0);
   flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   EXPECT_EQ(flight.run(0.5).motion, Motion::kBrake);
   EXPECT_EQ(flight.requests.back(), vehicle::Command::kHold);
   flight.state.mode = vehicle::FlightMode::kHold;
@@ -144,13 +144,13 @@ TEST(Supervisor, TheFirstPlanHasItsTime) {
 TEST(Supervisor, AWriterThatFellSilentAndSetpointsThatCannotBeSentAreHazards) {
   Flight flight;
   flight.fly().run(1.0);
-  flight.picture.lost_writers = 1;
+  flight.context.lost_writers = 1;
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
   EXPECT_EQ(flight.supervisor.hazard(), "a writer of obstacle tracks has fallen silent");
-  flight.picture.lost_writers = 0;
-  flight.picture.unsent_for = 0.1;
+  flight.context.lost_writers = 0;
+  flight.context.unsent_for = 0.1;
   EXPECT_EQ(flight.turn().motion, Motion::kFollow);
-  flight.picture.unsent_for = 0.3;
+  flight.context.unsent_for = 0.3;
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
   EXPECT_EQ(flight.supervisor.hazard(), "setpoints cannot be sent");
 }
@@ -178,7 +178,7 @@ TEST(Supervisor, ACriticalBatteryEndsTheFlightByLanding) {
   EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
   flight.state.battery = vehicle::BatteryState::kCritical;
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   flight.run(0.5);
   EXPECT_EQ(flight.requests.back(), vehicle::Command::kLand);
   EXPECT_EQ(flight.asked(vehicle::Command::kHold), 0);
@@ -198,7 +198,7 @@ TEST(Supervisor, CtrlCDoesNotKeepACriticalBatteryFromLanding) {
   Flight flight;
   flight.fly().run(1.0);
   flight.state.battery = vehicle::BatteryState::kCritical;
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   for (int i = 0; i < 60; ++i) {
     flight.turn();
     flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
@@ -215,7 +215,7 @@ TEST(Supervisor, ABatteryThatEndsWhileItStopsLandsToo) {
   Flight flight;
   flight.stop();
   flight.state.battery = vehicle::BatteryState::kCritical;
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   flight.run(1.0);
   EXPECT_EQ(flight.requests.back(), vehicle::Command::kLand);
 }
@@ -233,7 +233,7 @@ TEST(Supervisor, DoesNotBeginOutsideTheGeofence) {
   m.geofence = {{-5, -5, 0}, {30, 5, 10}};
   for (const bool outside : {false, true}) {
     Flight flight(m);
-    flight.state.position = {outside ? -6.0 : -4.0, 0, 0};
+    flight.state.motion.value.position = {outside ? -6.0 : -4.0, 0, 0};
     flight.turn();
     EXPECT_EQ(flight.supervisor.done(), outside);
     if (!outside) continue;

@@ -30,10 +30,10 @@ const std::vector<Missing>& missing_things() {
       {"old heartbeat", [](Flight& f) { f.heartbeats = false, f.state.heartbeat_stamp = f.now - 3.1; }, "heartbeat",
        30.0, MissingPeer::kAutopilot},
       {"tracks", [](Flight& f) { f.tracks = false; }, "obstacle tracks on DDS domain 0", 30.0, MissingPeer::kTracks},
-      {"old tracks", [](Flight& f) { f.tracks = false, f.picture.newest_tracks = f.now - 1.1; }, "obstacle tracks",
+      {"old tracks", [](Flight& f) { f.tracks = false, f.context.newest_tracks = f.now - 1.1; }, "obstacle tracks",
        30.0, MissingPeer::kTracks},
       {"position", [](Flight& f) { f.positions = false; }, "local position", 60.0, MissingPeer::kNone},
-      {"old position", [](Flight& f) { f.positions = false, f.state.position_stamp = f.now - 0.6; }, "local position",
+      {"old position", [](Flight& f) { f.positions = false, f.state.motion.stamp = f.now - 0.6; }, "local position",
        60.0, MissingPeer::kNone},
       {"estimator", [](Flight& f) { f.state.local_position_ok = false; }, "local position", 60.0, MissingPeer::kNone},
       {"health", [](Flight& f) { f.state.armable = false, f.state.health = "gyro, compass"; }, "gyro, compass", 60.0,
@@ -119,7 +119,7 @@ TEST(Supervisor, StreamsBeforeItAsksForOffboardAndArmsAfterIt) {
 TEST(Supervisor, AnAcknowledgementIsNoProof) {
   Flight flight;
   flight.engage().turn();
-  flight.picture.report = vehicle::CommandReport{vehicle::Command::kOffboard, true, ""};
+  flight.context.report = vehicle::CommandReport{vehicle::Command::kOffboard, true, ""};
   flight.run(1.0);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
   EXPECT_EQ(flight.asked(vehicle::Command::kArm), 0);
@@ -163,7 +163,7 @@ TEST(Supervisor, OffboardThatWasGrantedAndTakenBackIsNotAskedForAgain) {
   flight.turn();
   flight.turn();
   EXPECT_EQ(flight.asked(vehicle::Command::kOffboard), 1);
-  flight.picture.report = vehicle::CommandReport{vehicle::Command::kOffboard, true, ""};
+  flight.context.report = vehicle::CommandReport{vehicle::Command::kOffboard, true, ""};
   flight.run(5.0);
   EXPECT_EQ(flight.asked(vehicle::Command::kOffboard), 1);
   EXPECT_TRUE(flight.supervisor.done());
@@ -174,7 +174,7 @@ TEST(Supervisor, OffboardThatWasGrantedAndTakenBackIsNotAskedForAgain) {
 TEST(Supervisor, DoesNotRepeatARequestOnAnOldHeartbeat) {
   Flight flight;
   flight.stop();
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   while (flight.asked(vehicle::Command::kHold) == 0) flight.turn();
   flight.heartbeats = false;
   flight.run(4.0);
@@ -225,8 +225,8 @@ TEST(Supervisor, NeverArmsWhenTheAutopilotOrTheTracksAreNoLongerReady) {
     flight.engage().turn();
     flight.state.mode = vehicle::FlightMode::kOffboard;
     missing.take_away(flight);
-    if (!flight.positions) flight.state.position_stamp = flight.now - 0.6;
-    if (!flight.tracks) flight.picture.newest_tracks = flight.now - 1.1;
+    if (!flight.positions) flight.state.motion.stamp = flight.now - 0.6;
+    if (!flight.tracks) flight.context.newest_tracks = flight.now - 1.1;
     flight.run(9.0);
     EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
     EXPECT_NE(flight.supervisor.waiting_for().find(missing.waiting_for), std::string::npos);
@@ -270,7 +270,7 @@ TEST(Supervisor, InterruptWhileOffboardIsAskedForInTheAirEndsInHold) {
   flight.heartbeats = false;
   EXPECT_EQ(flight.turn().request, vehicle::Command::kOffboard);
   flight.supervisor.stop(flight.now, Outcome::kAborted, "interrupted");
-  flight.picture.at_rest = true;
+  flight.context.at_rest = true;
   EXPECT_EQ(flight.run(0.9).motion, Motion::kBrake);
   ASSERT_FALSE(flight.supervisor.done());
   flight.heartbeats = true;

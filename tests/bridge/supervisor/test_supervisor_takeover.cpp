@@ -36,7 +36,7 @@ TEST(Supervisor, AModeChangeEndsTheStreamAtOnceAndForGoodInEveryPhase) {
       {"stopping", [](Flight& f) { f.stop().turn(); }},
       {"handing over",
        [](Flight& f) {
-         f.stop().picture.at_rest = true;
+         f.stop().context.at_rest = true;
          f.run(0.5);
        }},
   };
@@ -131,7 +131,7 @@ TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
 TEST(Supervisor, AFailsafeInTheHandOverIsNoArrival) {
   Flight flight;
   flight.fly();
-  flight.picture.at_target = true;
+  flight.context.at_target = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
   flight.turn();
@@ -154,7 +154,7 @@ TEST(Supervisor, AFailsafeIsNoPlaceToArriveIn) {
   flight.state.mode = vehicle::FlightMode::kPosition;
   flight.state.failsafe = true;
   flight.turn();
-  flight.picture.at_target = true;
+  flight.context.at_target = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }

@@ -26,12 +26,11 @@ class Link final : public vehicle::VehicleLink {
   vehicle::VehicleState state() override {
     const sim::vehicle::Motion& motion = autopilot_.true_motion();
     vehicle::VehicleState state;
-    state.heartbeat_stamp = state.position_stamp = autopilot_.time();
+    state.heartbeat_stamp = state.motion.stamp = autopilot_.time();
     state.armed = autopilot_.armed();
     state.mode = autopilot_.mode() == sim::vehicle::FlightMode::kOffboard ? vehicle::FlightMode::kOffboard
                                                                           : vehicle::FlightMode::kHold;
-    state.position = motion.position - vehicle_.origin;
-    state.velocity = motion.velocity;
+    state.motion.value = {motion.position - vehicle_.origin, motion.velocity};
     state.yaw = motion.yaw;
     state.armable = autopilot_.prearm_ok();
     state.local_position_ok = true;

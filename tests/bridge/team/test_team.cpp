@@ -50,13 +50,13 @@ Intent intent(std::uint32_t system = 2, const TimedPath& path = line({10, 0, 5},
 }
 
 IntentMessage message(double received, double age, const Intent& said, std::uint64_t writer = 100) {
-  return {writer, received, age, said};
+  return {{writer, received, age}, said};
 }
 
 vehicle::VehicleState own(double t = 10.0) {
   vehicle::VehicleState state;
-  state.position_stamp = t;
-  state.position = {1, 2, 3};
+  state.motion.stamp = t;
+  state.motion.value.position = {1, 2, 3};
   state.origin = kHere;
   state.system_id = 1;
   state.in_air = true;
@@ -297,7 +297,7 @@ TEST(Team, TellsAStopAStayAndWhereItDriftsWhenItFollowsNothing) {
   EXPECT_EQ(h.transport.sent.back().path[0].position, Vec3(1, 2, 3));
   EXPECT_EQ(h.transport.sent.back().path[1].position, Vec3(1, 2, 5));
   vehicle::VehicleState landing = own();
-  landing.velocity = {0, 0, -0.7};
+  landing.motion.value.velocity = {0, 0, -0.7};
   h.team.tell(10.0, landing, nullptr, 4);
   EXPECT_NEAR(h.transport.sent.back().path.back().position.z(), 2.3, 1e-9);
   landing.in_air = false;
@@ -337,7 +337,7 @@ struct TeamCompanion {
     for (double t = from; t < to; t += 0.02) {
       vehicle::VehicleState& state = link.telemetry;
       state = own(t);
-      state.position = {0, 0, 5};
+      state.motion.value.position = {0, 0, 5};
       state.heartbeat_stamp = t;
       state.armed = state.armable = state.local_position_ok = true;
       state.mode = t > from + 0.1 ? vehicle::FlightMode::kOffboard : vehicle::FlightMode::kHold;

@@ -87,15 +87,16 @@ TEST_F(SimulatedDds, FliesOnDdsAlone) {
   DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = true, .name_space = "px4_3"});
   ASSERT_TRUE(step_until([&] { return link.state().local_position_ok; }));
   const VehicleState s = link.state();
-  EXPECT_LT((s.position - Vec3(1, 2, 3)).norm(), 0.01);
+  EXPECT_LT((s.motion.value.position - Vec3(1, 2, 3)).norm(), 0.01);
   EXPECT_NEAR(s.yaw, airborne().yaw, 1e-3);
   EXPECT_TRUE(s.origin);
   EXPECT_EQ(s.estimate_resets, 0U);
   const Setpoint setpoint{.position = {2, 2, 3}, .yaw = airborne().yaw};
   ASSERT_TRUE(step_until([&] { return link.send(setpoint) && dds_.setpoints() > 0; }));
   ASSERT_EQ(autopilot_.set_mode(6), jink::sim::vehicle::Result::kAccepted);
-  EXPECT_TRUE(step_until([&] { return link.send(setpoint) && (link.state().position - Vec3(2, 2, 3)).norm() < 0.1; }))
-      << link.state().position.transpose();
+  EXPECT_TRUE(step_until([&] {
+    return link.send(setpoint) && (link.state().motion.value.position - Vec3(2, 2, 3)).norm() < 0.1;
+  })) << link.state().motion.value.position.transpose();
   EXPECT_EQ(dds_.malformed(), 0U);
 }
 

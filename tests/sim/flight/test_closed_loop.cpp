@@ -51,7 +51,7 @@ config::Obstacle ball(double radius, const Vec3& position, const Vec3& velocity 
 class Hash final : public bridge::companion::FlightObserver, public world::TruthObserver {
  public:
   void on_state(double t, const bridge::vehicle::VehicleState& state) override {
-    add(t, state.position, state.velocity);
+    add(t, state.motion.value.position, state.motion.value.velocity);
   }
   void on_tracks(double t, const std::vector<planner::base::Track>& tracks) override {
     for (const planner::base::Track& track : tracks) add(t, track.position, track.velocity);
@@ -314,7 +314,7 @@ TEST(ClosedLoop, EachFaultsBeginningAndEndIsAnEvent) {
 class StateWatch final : public bridge::companion::FlightObserver {
  public:
   void on_state(double t, const bridge::vehicle::VehicleState& state) override {
-    oldest = std::max(oldest, t - state.position_stamp);
+    oldest = std::max(oldest, t - state.motion.stamp);
     resets = std::max(resets, state.estimate_resets);
     shift = state.estimate_shift;
     low_battery = low_battery || state.battery != bridge::vehicle::BatteryState::kOk;

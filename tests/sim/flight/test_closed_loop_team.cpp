@@ -32,7 +32,9 @@ config::Scenario swapping() {
 /// What the observers are told.
 class Watch final : public bridge::companion::FlightObserver, public world::TruthObserver {
  public:
-  void on_state(double, const bridge::vehicle::VehicleState& state) override { states.push_back(state.position); }
+  void on_state(double, const bridge::vehicle::VehicleState& state) override {
+    states.push_back(state.motion.value.position);
+  }
   void on_event(double, std::string_view name, const std::string& detail) override {
     events.push_back(std::string(name) + ": " + detail);
   }

@@ -54,7 +54,7 @@ TEST_F(VirtualLinkTest, TellsWhatTheAutopilotKnows) {
   EXPECT_EQ(state.heartbeat_stamp, 0.0);
   EXPECT_TRUE(state.armed);
   EXPECT_EQ(state.mode, bridge::vehicle::FlightMode::kHold);
-  EXPECT_EQ(state.position, Vec3(0, 0, 10));
+  EXPECT_EQ(state.motion.value.position, Vec3(0, 0, 10));
   EXPECT_EQ(state.battery, bridge::vehicle::BatteryState::kOk);
   EXPECT_EQ(state.system_id, 1U);
   EXPECT_FALSE(state.failsafe);
@@ -96,18 +96,18 @@ TEST_F(VirtualLinkTest, AJumpOfTheEstimateIsCountedWithItsShift) {
   run(0.02);
   EXPECT_EQ(link.state().estimate_resets, 1U);
   EXPECT_EQ(link.state().estimate_shift, Vec3(3, 0, 1));
-  EXPECT_NEAR(link.state().position.x(), 3.0, 0.1);
+  EXPECT_NEAR(link.state().motion.value.position.x(), 3.0, 0.1);
 }
 
 TEST_F(VirtualLinkTest, TelemetryStopsWhereTheLinkIsLostDownwards) {
   run(0.1);
   link.impair({.down = {.loss = 1.0}});
   run(0.5, true);
-  EXPECT_NEAR(link.state().position_stamp, 0.08, 1e-9);
+  EXPECT_NEAR(link.state().motion.stamp, 0.08, 1e-9);
   EXPECT_TRUE(autopilot.stream_live());  // upwards it works
   link.impair({});
   run(0.1);
-  EXPECT_GT(link.state().position_stamp, 0.6);
+  EXPECT_GT(link.state().motion.stamp, 0.6);
 }
 
 TEST_F(VirtualLinkTest, SetpointsStopWhereTheLinkIsLostUpwards) {
@@ -116,7 +116,7 @@ TEST_F(VirtualLinkTest, SetpointsStopWhereTheLinkIsLostUpwards) {
   link.impair({.up = {.loss = 1.0}});
   run(1.5, true);
   EXPECT_FALSE(autopilot.stream_live());
-  EXPECT_GT(link.state().position_stamp, 1.6);
+  EXPECT_GT(link.state().motion.stamp, 1.6);
 }
 
 TEST_F(VirtualLinkTest, DelayedTelemetryTellsOfThePast) {

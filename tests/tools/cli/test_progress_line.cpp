@@ -51,10 +51,10 @@ class LiveFlightTest : public ::testing::Test {
   void at(double t, const Vec3& position, double age = 0.0) {
     bridge::vehicle::VehicleState state;
     state.heartbeat_stamp = t - age;
-    state.position_stamp = t - age;
+    state.motion.stamp = t - age;
     state.mode = bridge::vehicle::FlightMode::kOffboard;
-    state.position = position;
-    state.velocity = {3, 0, 0};
+    state.motion.value.position = position;
+    state.motion.value.velocity = {3, 0, 0};
     live_.on_state(t, state);
   }
 

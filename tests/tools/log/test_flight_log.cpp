@@ -64,7 +64,7 @@ TEST(FlightLog, WritesEveryRecordInOrderAndAllBeforeItCloses) {
   const auto file = folder.path() / "flight.jsonl";
   FlightLog log(file, {{"scenario", "s"}, {"seed", 7}});
   bridge::vehicle::VehicleState state;
-  state.position = {1.5, -0.0, 1e-9};
+  state.motion.value.position = {1.5, -0.0, 1e-9};
   state.armed = true;
   for (int i = 0; i < 500; ++i) {
     log.on_state(0.1 * i, state);

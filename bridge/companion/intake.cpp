@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/companion/intake.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace jink::bridge::companion {
+namespace {
+
+constexpr int kMostMessages = 64;  // of tracks, in a turn
+
+}  // namespace
+
+Intake::Intake(const config::Mission& mission, const config::Settings& settings, vehicle::VehicleLink& link,
+               tracking::TrackSource& tracks, team::IntentTransport* intents)
+    : mission_(mission), settings_(settings), link_(link), tracks_(tracks), table_(mission.tracks.coast_s) {
+  if (mission.intents && intents != nullptr) team_.emplace(*intents, mission.vehicle.radius, mission.tracks.coast_s);
+}
+
+Intake::FrameChange Intake::take_state() {
+  state_ = link_.state();
+  FrameChange change;
+  change.rebooted = std::exchange(reboots_, state_.reboots) != state_.reboots;
+  if (std::exchange(estimate_resets_, state_.estimate_resets) != state_.estimate_resets)
+    change.shift = state_.estimate_shift - std::exchange(estimate_shift_, state_.estimate_shift);
+  return change;
+}
+
+bool Intake::take_tracks(double now) {
+  tracking::TrackMessage message;
+  bool any = false;
+  // A turn takes no more than so many: a writer at full speed must not keep the setpoints waiting.
+  for (int taken = 0; taken < kMostMessages && tracks_.poll(message); ++taken) {
+    table_.ingest(message);
+    any = true;
+  }
+  if (any && state_.motion.age(now) <= settings_.companion.stale_state)
+    table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
+  return any;
+}
+
+void Intake::listen_to_team(double now) {
+  if (team_) team_->listen(now, state_);
+}
+
+int Intake::lost_writers(double now, bool in_flight) {
+  const int live = table_.live_writers(now, mission_.tracks.timeout_s);
+  if (in_flight) most_writers_ = std::max(most_writers_, live);
+  return std::max(0, most_writers_ - live);
+}
+
+}  // namespace jink::bridge::companion

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the companion takes in: the vehicle's state, the obstacle tracks, what the team's other vehicles tell.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bridge/team/team.hpp"
+#include "bridge/tracking/track_source.hpp"
+#include "bridge/tracking/track_table.hpp"
+#include "bridge/vehicle/vehicle_link.hpp"
+#include "config/mission.hpp"
+#include "config/settings.hpp"
+
+namespace jink::bridge::companion {
+
+/// The newest of all inputs. The parts outlive it. Not thread-safe.
+class Intake {
+ public:
+  /// `intents`: to and from the team's other vehicles; null: there are none.
+  Intake(const config::Mission& mission, const config::Settings& settings, vehicle::VehicleLink& link,
+         tracking::TrackSource& tracks, team::IntentTransport* intents);
+
+  /// What has happened to the autopilot's local frame since the last call.
+  struct FrameChange {
+    bool rebooted = false;      ///< it may be another frame
+    std::optional<Vec3> shift;  ///< jump of the position estimate: the vehicle did not move
+  };
+  FrameChange take_state();
+  /// True: there was a message.
+  bool take_tracks(double now);
+  void listen_to_team(double now);
+
+  [[nodiscard]] const vehicle::VehicleState& state() const { return state_; }
+  /// Sum of the jumps so far.
+  [[nodiscard]] const Vec3& estimate_shift() const { return estimate_shift_; }
+  [[nodiscard]] tracking::TrackTable& table() { return table_; }
+  [[nodiscard]] const tracking::TrackTable& table() const { return table_; }
+  [[nodiscard]] tracking::TrackSourceStatus source_status() const { return tracks_.status(); }
+  /// Null: there is none.
+  [[nodiscard]] team::Team* team() { return team_ ? &*team_ : nullptr; }
+  /// Writers that watched in this flight, and watch no more, nor anybody in their place.
+  [[nodiscard]] int lost_writers(double now, bool in_flight);
+
+ private:
+  const config::Mission& mission_;
+  const config::Settings& settings_;
+  vehicle::VehicleLink& link_;
+  tracking::TrackSource& tracks_;
+  tracking::TrackTable table_;
+  std::optional<team::Team> team_;  // where the mission wants it and there is a transport
+  vehicle::VehicleState state_;
+  std::uint32_t estimate_resets_ = 0;  // that have been told
+  std::uint32_t reboots_ = 0;          // likewise
+  Vec3 estimate_shift_ = Vec3::Zero();
+  int most_writers_ = 0;  // live at once in this flight
+};
+
+}  // namespace jink::bridge::companion

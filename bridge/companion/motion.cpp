@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/companion/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace jink::bridge::companion {
+namespace {
+
+constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
+constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
+constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
+constexpr double kTakeoffTolerance = 0.3;  // m
+constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
+
+using Motion = supervisor::Decision::Motion;
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+planner::base::Box flight_volume(const config::Mission& mission) {
+  planner::base::Box box = mission.geofence;
+  box.min.z() = std::max(box.min.z(), mission.min_height);
+  return box;
+}
+
+MotionControl::MotionControl(const config::Mission& mission, const config::Settings& settings,
+                             vehicle::VehicleLink& link, const base::Clock* clock, FlightReporter& reporter)
+    : mission_(mission),
+      settings_(settings),
+      link_(link),
+      clock_(clock),
+      reporter_(reporter),
+      stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(),
+               settings.companion.drag, settings.companion.acceleration_damping, settings.horizon.braking,
+               mission.vehicle.max_acceleration, flight_volume(mission), mission.vehicle.max_speed}) {}
+
+void MotionControl::steer(double now, Motion motion, supervisor::Phase phase, const vehicle::VehicleState& state) {
+  if (motion == Motion::kTakeoffPoint) take_off(now, phase, state);
+  // Until OFFBOARD is confirmed the vehicle may be moving: it is to stop where it is then, not to come back.
+  if (motion == Motion::kStay) stream_.hold(state.motion.value.position, now);
+  if (motion == Motion::kBrake) brake(now, state);
+  if (!stream_.active()) stream_.hold(state.motion.value.position, now);
+}
+
+void MotionControl::take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state) {
+  if (!stream_.active() || phase == supervisor::Phase::kEngaging) {
+    takeoff_point_ = state.motion.value.position;
+    takeoff_point_.z() = std::max(state.motion.value.position.z() + mission_.takeoff_height, mission_.min_height);
+    takeoff_point_.z() =
+        std::min(takeoff_point_.z(), std::max(mission_.geofence.max.z(), state.motion.value.position.z()));
+    stream_.hold(takeoff_point_, now);
+  } else if (stream_.braking()) {  // a hazard of the climb has passed
+    stream_.hold(takeoff_point_, now);
+  }
+}
+
+// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it
+// was lost, and the vehicle's position is known.
+void MotionControl::brake(double now, const vehicle::VehicleState& state) {
+  if (stream_.braking()) return;
+  const bool known = state.motion.age(now) <= settings_.companion.stale_state;
+  const bool says_nothing = !stream_.active() || stream_.plan(now).empty() || lost(state);
+  if (!known || !says_nothing) {
+    stream_.brake(now);
+    return;
+  }
+  stream_.brake(now,
+                planner::base::TimedPoint{now, state.motion.value.position, state.motion.value.velocity, Vec3::Zero()});
+}
+
+void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
+  planner::base::TimedPath path = std::move(result.plan.path);
+  // Of the time that the plan took.
+  const Vec3 shift = estimate_shift - result.job.estimate_shift;
+  const double waited = stream_.waited() - result.job.waited;
+  for (planner::base::TimedPoint& point : path) {
+    point.t += result.job.start + waited;
+    point.position += shift;
+  }
+  stream_.follow(std::move(path));
+  new_plan_ = true;
+  if (result.job.newest_track) unsent_track_ = UnsentTrack{*result.job.newest_track, result.job.start};
+}
+
+void MotionControl::send(double now, double dt, const vehicle::VehicleState& state,
+                         const std::optional<Vec3>& towards) {
+  const config::CompanionSettings& companion = settings_.companion;
+  const bool due = !last_sent_ || now - *last_sent_ + 1e-6 >= kSlack / companion.setpoint_rate_hz;
+  if (!due && !new_plan_) return;
+  last_sent_ = now;
+  new_plan_ = false;
+  const vehicle::Setpoint setpoint = stream_.setpoint(now, heading(dt, state, towards));
+  const bool sent = link_.send(setpoint);
+  reporter_.sending(now, sent);
+  if (!sent) {
+    if (!unsent_since_) unsent_since_ = now;
+    return;
+  }
+  unsent_since_.reset();
+  reporter_.setpoint(now, setpoint);
+  const double lead = std::max(companion.setpoint_lead, companion.committed_acceleration_lead());
+  if (unsent_track_ && now + lead >= unsent_track_->from) {
+    const double at = clock_ != nullptr ? clock_->now() : now;
+    reporter_.summary().track_to_setpoint_ms.push_back(1e3 * (at - unsent_track_->received));
+    unsent_track_.reset();
+  }
+}
+
+// Turning at a bounded rate from where the vehicle looks now.
+double MotionControl::heading(double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards) {
+  if (!yaw_) yaw_ = state.yaw;
+  if (!towards) return *yaw_;
+  const Vec3 ahead = *towards - state.motion.value.position;
+  if (ahead.head<2>().norm() > kYawDistance) {
+    const double most = kYawRate * dt;
+    yaw_ = wrapped(*yaw_ + std::clamp(wrapped(std::atan2(ahead.y(), ahead.x()) - *yaw_), -most, most));
+  }
+  return *yaw_;
+}
+
+void MotionControl::observe(double now, double dt, const vehicle::VehicleState& state) {
+  if (!stream_.active() || state.motion.age(now) > settings_.companion.stale_state) return;
+  stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity, dt);
+  const double off = error(state);
+  double& largest = reporter_.summary().largest_tracking_error;
+  largest = std::max(largest, off);
+  tracking_error_ = std::max(off, tracking_error_ * std::exp(-dt / kForgetting));
+}
+
+void MotionControl::shift(const Vec3& by) {
+  stream_.shift(by);
+  takeoff_point_ += by;
+}
+
+double MotionControl::error(const vehicle::VehicleState& state) const {
+  return (stream_.reference(state.motion.stamp).position - state.motion.value.position).norm();
+}
+
+double MotionControl::margin() const {
+  const double least = settings_.horizon.margin;
+  return std::clamp(tracking_error_, least, std::max(least, settings_.companion.margin_limit));
+}
+
+bool MotionControl::at_takeoff_height(const vehicle::VehicleState& state) const {
+  return takeoff_point_.z() - state.motion.value.position.z() < kTakeoffTolerance;
+}
+
+}  // namespace jink::bridge::companion

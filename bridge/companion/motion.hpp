@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the companion makes of a decision: the stream's reference, and the setpoint that goes on the wire.
+#pragma once
+
+#include <optional>
+
+#include "bridge/base/clock.hpp"
+#include "bridge/companion/planner_task.hpp"
+#include "bridge/companion/report.hpp"
+#include "bridge/setpoints/setpoint_stream.hpp"
+#include "bridge/supervisor/supervisor.hpp"
+#include "bridge/vehicle/vehicle_link.hpp"
+#include "config/mission.hpp"
+#include "config/settings.hpp"
+
+namespace jink::bridge::companion {
+
+/// Where a path may lead.
+[[nodiscard]] planner::base::Box flight_volume(const config::Mission& mission);
+
+/// Moves the vehicle. What it refers to outlives it. Not thread-safe.
+class MotionControl {
+ public:
+  /// `clock`: to measure what a step takes; null: virtual time.
+  MotionControl(const config::Mission& mission, const config::Settings& settings, vehicle::VehicleLink& link,
+                const base::Clock* clock, FlightReporter& reporter);
+
+  /// Makes the reference that of the decision: the take-off point, a stay, a brake. Not for Motion::kNone.
+  void steer(double now, supervisor::Decision::Motion motion, supervisor::Phase phase,
+             const vehicle::VehicleState& state);
+  /// Follows a plan from its start, shifted by what the estimate has jumped since it was begun, later by what the
+  /// reference has waited.
+  void follow(PlanResult result, const Vec3& estimate_shift);
+  /// Sends a setpoint where one is due. `dt`: since the last step; `towards`: where the vehicle is to look, where it
+  /// is to turn at all.
+  void send(double now, double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
+  /// Learns from where the vehicle is on its reference.
+  void observe(double now, double dt, const vehicle::VehicleState& state);
+  /// The autopilot's estimate jumped by that.
+  void shift(const Vec3& by);
+
+  [[nodiscard]] const setpoints::SetpointStream& stream() const { return stream_; }
+  /// Distance from the reference. Precondition: the stream is active.
+  [[nodiscard]] double error(const vehicle::VehicleState& state) const;
+  /// So far from its reference the vehicle has lost it.
+  [[nodiscard]] bool lost(const vehicle::VehicleState& state) const { return error(state) > kLostReference; }
+  /// The largest error of late.
+  [[nodiscard]] double tracking_error() const { return tracking_error_; }
+  /// What plans are to keep from obstacles: the margin of the settings, or what tracking has been off by of late where
+  /// that is more.
+  [[nodiscard]] double margin() const;
+  /// s, for which setpoints could not be sent.
+  [[nodiscard]] double unsent_for(double now) const { return unsent_since_ ? now - *unsent_since_ : 0.0; }
+  [[nodiscard]] bool at_takeoff_height(const vehicle::VehicleState& state) const;
+
+ private:
+  static constexpr double kLostReference = 1.2;  // m
+  void take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state);
+  void brake(double now, const vehicle::VehicleState& state);
+  [[nodiscard]] double heading(double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
+
+  /// The newest track in a plan whose first setpoint is still to be sent.
+  struct UnsentTrack {
+    double received;
+    double from;  ///< the plan's start
+  };
+
+  const config::Mission& mission_;
+  const config::Settings& settings_;
+  vehicle::VehicleLink& link_;
+  const base::Clock* clock_;
+  FlightReporter& reporter_;
+  setpoints::SetpointStream stream_;
+  Vec3 takeoff_point_ = Vec3::Zero();
+  double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
+  std::optional<double> last_sent_;
+  bool new_plan_ = false;  // since then
+  std::optional<UnsentTrack> unsent_track_;
+  std::optional<double> unsent_since_;  // setpoints
+  std::optional<double> yaw_;
+};
+
+}  // namespace jink::bridge::companion

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/companion/planning.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace jink::bridge::companion {
+namespace {
+
+constexpr double kInset = 0.05;       // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInsetMargin = 0.3;  // of the margin, likewise
+constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
+
+}  // namespace
+
+std::optional<PlanResult> Planning::take(double now) {
+  std::optional<PlanResult> result;
+  try {
+    if (!failed_) result = planner_.poll(now);
+  } catch (const std::exception& failure) {
+    failed(now, failure);
+  }
+  if (!result) return result;
+  ++plans_;
+  reporter_.plan(now, *result);
+  if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
+  return result;
+}
+
+void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route) {
+  const config::CompanionSettings& companion = settings_.companion;
+  if (failed_ || planner_.busy()) return;
+  const double period = 1.0 / (new_tracks_ ? companion.largest_replan_rate_hz : companion.replan_rate_hz);
+  if (last_begun_ && now - *last_begun_ + 1e-6 < period) return;
+  last_begun_ = now;
+  new_tracks_ = false;
+  PlanJob next = job(now, intake, motion, route);
+  try {
+    planner_.start(std::move(next));
+  } catch (const std::exception& failure) {
+    failed(now, failure);
+  }
+}
+
+PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, Route& route) {
+  const vehicle::VehicleState& state = intake.state();
+  const setpoints::SetpointStream& stream = motion.stream();
+  PlanJob job;
+  job.number = plans_;
+  job.begun = now;
+  job.start = now + std::max(planner_.latency(), settings_.companion.commitment);
+  job.newest_track = intake.table().newest_message();
+  job.estimate_shift = intake.estimate_shift();
+  job.waited = stream.waited();
+  job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
+  if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
+
+  const bool lost = motion.lost(state);
+  reporter_.reference_lost(now, lost, motion.error(state));
+  const planner::base::TimedPoint reference = stream.reference(job.start);
+  planner::horizon::PathRequest& request = job.request;
+  request.position = lost ? base::position_at(state.motion, job.start) : reference.position;
+  request.velocity = lost ? state.motion.value.velocity : reference.velocity;
+  request.target = route.target();
+  request.vehicle = mission_.vehicle;
+  // Where something near moves in a way not understood yet, it is watched before it is passed.
+  const bool cautious = intake.table().puzzled(mission_.vehicle.cruise_speed);
+  reporter_.cautious(now, cautious);
+  if (cautious) request.vehicle.cruise_speed *= kCautious;
+  request.stuck = route.stuck(now, state.motion.value.position);
+  reporter_.stuck(now, request.stuck);
+  request.margin = motion.margin();
+  double& largest_margin = reporter_.summary().largest_margin;
+  largest_margin = std::max(largest_margin, request.margin);
+  request.volume = volume(request.position, request.target, request.margin);
+  request.track_acceleration = settings_.horizon.track_acceleration;
+  request.acceleration_trust = settings_.horizon.acceleration_trust;
+  if (!lost) {
+    job.previous = stream.plan(job.start);
+    for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
+    // A plan to another waypoint is no plan to keep.
+    if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
+  }
+  return job;
+}
+
+planner::base::Box Planning::volume(const Vec3& start, const Vec3& target, double margin) const {
+  planner::base::Box box = flight_volume(mission_);
+  // The vehicle is off its path at times. Not by all of the margin: in a narrow corridor the room is needed to dodge.
+  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(kInsetMargin * margin);
+  box.min += inset;
+  box.max -= inset;
+  // Where the vehicle is already, a path may begin, and it may end where it is sent.
+  box.min = box.min.cwiseMin(start).cwiseMin(target);
+  box.max = box.max.cwiseMax(start).cwiseMax(target);
+  return box;
+}
+
+void Planning::failed(double now, const std::exception& failure) {
+  failed_ = true;
+  failure_ = failure.what();
+  reporter_.event(now, "planner_failed", *failure_);
+}
+
+}  // namespace jink::bridge::companion

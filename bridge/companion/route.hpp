@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The mission's waypoints, and how far the vehicle has come on them.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "bridge/vehicle/vehicle_link.hpp"
+
+namespace jink::bridge::companion {
+
+/// At least one waypoint. Pure logic.
+class Route {
+ public:
+  static constexpr double kArrival = 0.3;       ///< m, to the last waypoint
+  static constexpr double kArrivalSpeed = 0.5;  ///< m/s
+  static constexpr double kPassing = 0.7;       ///< m, to a waypoint on the way
+  static constexpr double kPatience = 4.0;      ///< s, without coming nearer to the waypoint
+  static constexpr double kGain = 0.5;          ///< m, that count as nearer
+
+  explicit Route(std::vector<Vec3> waypoints) : waypoints_(std::move(waypoints)) {}
+
+  /// The waypoint flown to.
+  [[nodiscard]] const Vec3& target() const { return waypoints_[next_]; }
+  [[nodiscard]] std::size_t passed() const { return next_; }
+  [[nodiscard]] std::size_t size() const { return waypoints_.size(); }
+  /// Goes on to the next waypoint where the vehicle is at one on the way; then true.
+  bool pass(const Vec3& position);
+  /// At the last waypoint, slow.
+  [[nodiscard]] bool arrived(const Vec3& position, const Vec3& velocity) const;
+  /// Whether the vehicle has long come no nearer to where it goes. To be asked in each plan.
+  bool stuck(double now, const Vec3& position);
+
+ private:
+  std::vector<Vec3> waypoints_;
+  std::size_t next_ = 0;
+  double nearest_ = planner::base::kInfinity;  // that the vehicle came to it, m
+  double gained_at_ = 0.0;                     // when
+};
+
+}  // namespace jink::bridge::companion

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/supervisor/command_request.hpp"
+
+namespace jink::bridge::supervisor {
+namespace {
+
+constexpr double kAskAgain = 1.5;  // s; a confirming heartbeat takes up to one
+constexpr int kMostTries = 5;
+
+}  // namespace
+
+std::optional<vehicle::Command> CommandRequest::ask(vehicle::Command command, double now,
+                                                    const vehicle::VehicleState& state) {
+  if (!asked_ || asked_->command != command) {
+    asked_ = Asked{command, now, 1, {}};
+    return command;
+  }
+  if (now - asked_->at < kAskAgain || state.heartbeat_stamp <= asked_->at) return std::nullopt;
+  asked_->at = now;
+  ++asked_->tries;
+  return command;
+}
+
+void CommandRequest::answer(const vehicle::CommandReport& report) {
+  if (asked_ && !report.accepted)
+    asked_->refusal = std::string(vehicle::to_string(report.command)) + " refused: " + report.detail;
+}
+
+bool CommandRequest::exhausted(double now, const vehicle::VehicleState& state) const {
+  if (!asked_) return false;
+  if (asked_->tries >= kMostTries) return now - asked_->at >= kAskAgain;
+  return state.heartbeat_stamp <= asked_->at && now - asked_->at >= kMostTries * kAskAgain;
+}
+
+std::optional<vehicle::Command> CommandRequest::command() const {
+  return asked_ ? std::optional(asked_->command) : std::nullopt;
+}
+
+}  // namespace jink::bridge::supervisor

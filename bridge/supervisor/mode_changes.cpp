@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/supervisor/mode_changes.hpp"
+
+namespace jink::bridge::supervisor {
+namespace {
+
+// s: PX4 is back in OFFBOARD 0.4 s after the stream, a heartbeat may be 1 s old
+constexpr double kFailsafePasses = 1.5;
+
+}  // namespace
+
+bool flies_by_itself(vehicle::FlightMode mode) {
+  return mode == vehicle::FlightMode::kHold || mode == vehicle::FlightMode::kLand ||
+         mode == vehicle::FlightMode::kReturn || mode == vehicle::FlightMode::kTakeoff ||
+         mode == vehicle::FlightMode::kMission;
+}
+
+ModeChange ModeChanges::judge(double now, Phase phase, bool armed_before, const vehicle::VehicleState& state) {
+  const bool airborne = phase == Phase::kClimbing || phase == Phase::kFlying;
+  const bool asking = phase == Phase::kEngaging || phase == Phase::kStopping || phase == Phase::kHandover;
+  const bool streaming = phase != Phase::kHandover && (airborne || asking);
+  const bool offboard = state.mode == vehicle::FlightMode::kOffboard;
+  if (asking && offboard) offboard_seen_ = true;
+  if (streaming && armed_before && !state.armed) return ModeChange::kDisarmed;
+  const bool left = streaming && offboard_seen_ && !offboard;
+  const bool never_came = asking && !offboard_seen_ && state.mode != before_;
+  if (!left && !never_came) {
+    failsafe_since_.reset();
+    return ModeChange::kNone;
+  }
+  if (!state.failsafe) return ModeChange::kTakeover;
+  if (phase == Phase::kEngaging) {  // of a companion before us: our stream ends it
+    offboard_seen_ = false;
+    return ModeChange::kNone;
+  }
+  if (!failsafe_since_) failsafe_since_ = now;
+  const bool may_pass = airborne && now - *failsafe_since_ <= kFailsafePasses;
+  return may_pass ? ModeChange::kFailsafePasses : ModeChange::kFailsafe;
+}
+
+}  // namespace jink::bridge::supervisor

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Who flies, by the mode; and what becomes of a command that shows no effect.
+#include <gtest/gtest.h>
+
+#include "bridge/supervisor/command_request.hpp"
+#include "bridge/supervisor/mode_changes.hpp"
+
+namespace jink::bridge::supervisor {
+namespace {
+
+struct Judged {
+  Judged() {
+    changes.engage(vehicle::FlightMode::kHold);
+    state.mode = vehicle::FlightMode::kOffboard;
+    state.armed = true;
+    EXPECT_EQ(judge(Phase::kEngaging), ModeChange::kNone);
+  }
+  ModeChange judge(Phase phase) { return changes.judge(now, phase, phase != Phase::kEngaging, state); }
+
+  ModeChanges changes;
+  vehicle::VehicleState state;
+  double now = 10.0;
+};
+
+TEST(ModeChanges, AnotherModeIsATakeoverWhereverTheVehicleIsOurs) {
+  for (const Phase phase : {Phase::kEngaging, Phase::kClimbing, Phase::kFlying, Phase::kStopping}) {
+    Judged flight;
+    EXPECT_EQ(flight.judge(phase), ModeChange::kNone);
+    flight.state.mode = vehicle::FlightMode::kPosition;
+    EXPECT_EQ(flight.judge(phase), ModeChange::kTakeover) << to_string(phase);
+  }
+  // Not in the hand-over, which asks for another mode, nor before and after.
+  for (const Phase phase : {Phase::kWaiting, Phase::kHandover, Phase::kLanding, Phase::kDone}) {
+    Judged flight;
+    flight.state.mode = vehicle::FlightMode::kPosition;
+    EXPECT_EQ(flight.judge(phase), ModeChange::kNone) << to_string(phase);
+  }
+}
+
+TEST(ModeChanges, BeforeOffboardTheModeOfBeforeIsTheOneToStay) {
+  ModeChanges changes;
+  vehicle::VehicleState state;
+  changes.engage(vehicle::FlightMode::kPosition);
+  state.mode = vehicle::FlightMode::kPosition;
+  EXPECT_EQ(changes.judge(1.0, Phase::kEngaging, false, state), ModeChange::kNone);
+  EXPECT_FALSE(changes.offboard_seen());
+  state.mode = vehicle::FlightMode::kHold;
+  EXPECT_EQ(changes.judge(1.0, Phase::kEngaging, false, state), ModeChange::kTakeover);
+}
+
+TEST(ModeChanges, AFailsafeMayPassForAWhileAndOnlyInFlight) {
+  Judged flight;
+  flight.state.mode = vehicle::FlightMode::kAltitude;
+  flight.state.failsafe = true;
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kFailsafePasses);
+  EXPECT_TRUE(flight.changes.failsafe());
+  EXPECT_EQ(flight.judge(Phase::kStopping), ModeChange::kFailsafe);
+  flight.now += 1.6;
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kFailsafe);
+  flight.state.mode = vehicle::FlightMode::kOffboard;
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kNone);
+  EXPECT_FALSE(flight.changes.failsafe());
+}
+
+TEST(ModeChanges, DisarmedCountsOnceFlightHasBegun) {
+  Judged flight;
+  flight.state.armed = false;
+  EXPECT_EQ(flight.judge(Phase::kEngaging), ModeChange::kNone);
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kDisarmed);
+  EXPECT_EQ(flight.judge(Phase::kHandover), ModeChange::kNone);
+}
+
+TEST(CommandRequest, AsksAgainOnNewHeartbeatsOnlyAndNotForEver) {
+  CommandRequest request;
+  vehicle::VehicleState state;
+  double now = 10.0;
+  EXPECT_FALSE(request.exhausted(now, state));
+  EXPECT_EQ(request.ask(vehicle::Command::kHold, now, state), vehicle::Command::kHold);
+  EXPECT_FALSE(request.ask(vehicle::Command::kHold, now + 2.0, state));  // no heartbeat since
+  int asked = 1;
+  while (!request.exhausted(now, state) && now < 60.0) {
+    now += 0.1;
+    state.heartbeat_stamp = now;
+    if (!request.exhausted(now, state)) asked += request.ask(vehicle::Command::kHold, now, state) ? 1 : 0;
+  }
+  EXPECT_EQ(asked, 5);
+  EXPECT_EQ(request.ask(vehicle::Command::kLand, now, state),
+            vehicle::Command::kLand);  // another one has its own tries
+  EXPECT_FALSE(request.exhausted(now, state));
+}
+
+TEST(CommandRequest, KeepsTheRefusalOfThisCommand) {
+  CommandRequest request;
+  request.answer({vehicle::Command::kHold, false, "denied"});
+  EXPECT_EQ(request.refusal(), "");
+  request.ask(vehicle::Command::kHold, 1.0, {});
+  request.answer({vehicle::Command::kHold, false, "denied"});
+  EXPECT_EQ(request.refusal(), "hold refused: denied");
+  request.ask(vehicle::Command::kLand, 1.1, {});
+  EXPECT_EQ(request.refusal(), "");
+}
+
+}  // namespace
+}  // namespace jink::bridge::supervisor
