@@ -22,7 +22,7 @@ struct Stamped {
   double stamp = kNever;     ///< when it was true
   double received = kNever;  ///< when it was heard
 
-  [[nodiscard]] bool heard() const { return received > kNever; }
+  [[nodiscard]] bool heard() const { return stamp > kNever; }
   /// s; infinite where nothing was heard.
   [[nodiscard]] double age(double now) const { return now - stamp; }
 };
