@@ -2,6 +2,7 @@
 // What comes in over MavsdkLink: who said it, what is asked for anew, how fast it comes. The handlers run on MAVSDK's
 // callback thread.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "bridge/mavsdk/link_impl.hpp"

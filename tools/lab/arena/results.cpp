@@ -108,4 +108,7 @@ std::string to_text(const Results& results) {
   return text;
 }
 
+ResultsFile::ResultsFile(const std::filesystem::path& file, const Results& results)
+    : campaign::JsonLinesFile(file, to_header(results.settings)) {}
+
 }  // namespace jink::tools::lab::arena

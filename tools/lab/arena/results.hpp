@@ -48,8 +48,7 @@ struct Results {
 class ResultsFile : public campaign::JsonLinesFile {
  public:
   /// As JsonLinesFile, with the results' header.
-  ResultsFile(const std::filesystem::path& file, const Results& results)
-      : campaign::JsonLinesFile(file, to_header(results.settings)) {}
+  ResultsFile(const std::filesystem::path& file, const Results& results);
 };
 
 }  // namespace jink::tools::lab::arena
