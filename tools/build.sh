@@ -9,7 +9,11 @@ groups=(${JINK_GROUPS-lab test}); [ "$preset" != asan ] || groups+=(sanitizers)
 tools/setup.sh ${groups[@]+"${groups[@]}"}
 options=(); [ -f "build/$preset/CMakeCache.txt" ] || options=(-DJINK_BUILD_LAB=OFF -DJINK_BUILD_TESTS=OFF)
 for group in ${groups[@]+"${groups[@]}"}; do
-  case $group in lab|test|bench) options+=("-DJINK_BUILD_${group^^}=ON") ;; esac
+  case $group in
+  lab) options+=(-DJINK_BUILD_LAB=ON) ;;
+  test) options+=(-DJINK_BUILD_TESTS=ON) ;;
+  bench) options+=(-DJINK_BUILD_BENCH=ON) ;;
+  esac
 done
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache} CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER:-ccache}
 # Objects are found by their dependency files, which spares the preprocessor's run before each compilation.
