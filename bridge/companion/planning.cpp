@@ -64,7 +64,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.target = route.target();
   request.vehicle = mission_.vehicle;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
-  const bool cautious = intake.table().puzzled(mission_.vehicle.cruise_speed);
+  const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
   request.stuck = route.stuck(now, state.motion.value.position);
