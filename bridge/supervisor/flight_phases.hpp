@@ -51,21 +51,21 @@ struct Engaging {
 };
 struct Climbing {
   static constexpr Phase kPhase = Phase::kClimbing;
-  double since;
+  double since = 0.0;
 };
 struct Flying {
   static constexpr Phase kPhase = Phase::kFlying;
-  double since;
+  double since = 0.0;
 };
 struct Stopping {
   static constexpr Phase kPhase = Phase::kStopping;
-  double since;
+  double since = 0.0;
   Ending ending;
   bool land = false;  ///< then, and no HOLD
 };
 struct Handover {
   static constexpr Phase kPhase = Phase::kHandover;
-  double since;
+  double since = 0.0;
   Ending ending;
   bool landing_interrupted = false;  ///< the autopilot may be in LAND still
   bool rescue = false;               ///< out of a failsafe that sinks: HOLD without setpoints
@@ -73,7 +73,7 @@ struct Handover {
 };
 struct Landing {
   static constexpr Phase kPhase = Phase::kLanding;
-  double since;
+  double since = 0.0;
   Ending ending;
   bool forced = false;  ///< goes on whoever stops the flight
   bool leave = false;   ///< that was tried: the flight is over once the autopilot lands

@@ -34,12 +34,12 @@ struct FlightContext {
 
 /// What a hazard is found in.
 struct Situation {
-  double now;
+  double now = 0.0;
   const vehicle::VehicleState& state;
   const FlightContext& flight;
   const config::TrackPolicy& tracks;
   const SupervisorSettings& settings;
-  bool failsafe;                            ///< the autopilot's failsafe flies
+  bool failsafe = false;                    ///< the autopilot's failsafe flies
   std::optional<double> following_since{};  ///< plans; none: while climbing
 };
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -23,7 +22,7 @@ int become_laboratory(char** argv) {
   const std::string laboratory = (here.parent_path() / "jink-lab").string();
   ::execv(laboratory.c_str(), argv);
   return cli::complain("this needs the laboratory, " + laboratory + ", which cannot be started (" +
-                       std::strerror(errno) + "); `tools/build.sh release jink_lab` builds it");
+                       std::generic_category().message(errno) + "); `tools/build.sh release jink_lab` builds it");
 }
 
 /// For --help alone: these commands are the laboratory's.

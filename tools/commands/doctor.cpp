@@ -64,7 +64,7 @@ void tell(const Checks& checks, const cli::Printer& printer) {
   }
   for (const Check& check : checks) {
     std::string level = fmt::format("{:<{}}", bridge::doctor::to_string(check.level), kLevelWidth);
-    if (printer.terminal()) level = colour(check.level) + level + "\033[0m";
+    if (printer.terminal()) level = fmt::format("{}{}\033[0m", colour(check.level), level);
     const std::string remedy = check.remedy.empty() ? "" : "  -> " + check.remedy;
     printer.line(fmt::format("{}  {:<{}}  {:<{}}{}", level, check.name, name_width, check.finding,
                              remedy.empty() ? 0 : finding_width, remedy));
