@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 
 packages=(
   build-essential cmake ninja-build ccache ca-certificates python3 python3-venv
-  libeigen3-dev libyaml-cpp-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev
+  libeigen3-dev libyaml-cpp-dev libcli11-dev libfmt-dev nlohmann-json3-dev libgeographiclib-dev zlib1g-dev
   libfastrtps-dev libfastcdr-dev fastddsgen
 )
 requirements=(tools/requirements.txt)

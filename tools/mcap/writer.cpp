@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/mcap/writer.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <concepts>
 #include <stdexcept>
@@ -10,6 +12,11 @@ namespace {
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+
+/// The CRC-32 of what `so_far` is of, then of `bytes`. 0 is that of nothing.
+std::uint32_t crc32_of(std::uint32_t so_far, std::string_view bytes) {
+  return static_cast<std::uint32_t>(crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 /// The specification's opcodes.
 enum class Op : std::uint8_t {
@@ -82,7 +89,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, std::string_view profi
 void McapWriter::put(std::string_view bytes) {
   out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   at_ += bytes.size();
-  crc_.process_bytes(bytes.data(), bytes.size());
+  crc_ = crc32_of(crc_, bytes);
 }
 
 McapWriter::Id McapWriter::add_schema(std::string_view name, std::string_view json_schema) {
@@ -125,10 +132,8 @@ void McapWriter::end_chunk() {
   }
   place.start = at_;
   place.size = chunk_.size();
-  boost::crc_32_type crc;
-  crc.process_bytes(chunk_.data(), chunk_.size());
   Fields fields;
-  fields.number(place.first_ns).number(place.last_ns).number(place.size).number(crc.checksum()).text("");
+  fields.number(place.first_ns).number(place.last_ns).number(place.size).number(crc32_of(0, chunk_)).text("");
   fields.number(place.size).raw(chunk_);
   put(record(Op::kChunk, fields));
   place.length = at_ - place.start;
@@ -181,9 +186,9 @@ std::string McapWriter::statistics() const {
 
 void McapWriter::close() {
   end_chunk();
-  put(record(Op::kDataEnd, Fields().number(crc_.checksum())));
+  put(record(Op::kDataEnd, Fields().number(crc_)));
   const std::uint64_t summary_start = at_;
-  crc_.reset();  // from here on that of the summary
+  crc_ = 0;  // from here on that of the summary
   std::string offsets;
   const auto group = [&](Op op, const std::string& records) {
     if (records.empty()) return;
@@ -202,7 +207,7 @@ void McapWriter::close() {
   Fields footer;
   footer.number(static_cast<std::uint8_t>(Op::kFooter)).number(kFooterBytes);
   put(footer.number(summary_start).number(offsets_start).bytes());
-  put(Fields().number(crc_.checksum()).bytes());  // the argument is made before crc_ changes
+  put(Fields().number(crc_).bytes());  // the argument is made before crc_ changes
   put(kMagic);
   out_.close();
   if (!out_) throw std::runtime_error(file_.string() + ": could not be written to its end");

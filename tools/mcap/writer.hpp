@@ -3,7 +3,6 @@
 // uncompressed chunks, each followed by its message indexes, and at the end the summary by which readers seek.
 #pragma once
 
-#include <boost/crc.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -60,7 +59,7 @@ class McapWriter {
   std::filesystem::path file_;
   std::ofstream out_;
   std::uint64_t at_ = 0;            // bytes written
-  boost::crc_32_type crc_;          // of them
+  std::uint32_t crc_ = 0;           // of them
   std::string schemas_, channels_;  // their records, again for the summary
   Id schema_count_ = 0, channel_count_ = 0;
   std::string chunk_;  // records of the one that is being filled
