@@ -16,8 +16,8 @@
 
 namespace jink::bridge::companion {
 
-/// Who wants to know what the companion does: the flight log, the live line. Called from the loop, unlocked; times are
-/// the companion's clock. Must not block.
+/// Who wants to know what the companion does: the flight log, the progress line. Called from the loop, unlocked; times
+/// are the companion's clock. Must not block.
 class FlightObserver {
  public:
   virtual ~FlightObserver() = default;

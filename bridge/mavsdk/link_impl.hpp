@@ -112,7 +112,7 @@ class MavsdkLink::Impl {
   void on(double now, const Sender& sender, const mavlink::Timesync& message);
   void on(double now, const Sender& sender, const mavlink::ParamValue& message);
   void on(double now, const Sender& sender, const mavlink::AdsbReport& message);
-  template <typename Other>  // what the picture of the autopilot alone takes in
+  template <typename Other>  // what the state of the autopilot alone takes in
   void on(double /*now*/, const Sender& /*sender*/, const Other& message) {
     const std::scoped_lock lock(mutex_);
     telemetry_.on(message);

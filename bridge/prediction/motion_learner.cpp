@@ -10,22 +10,22 @@
 namespace jink::bridge::prediction {
 namespace {
 
-constexpr double kSpacing = 0.05;        // s, between samples at first
-constexpr double kCoarsest = 0.2;        // s, that means of noisy samples are taken over
-constexpr double kFitPeriod = 0.15;      // s
-constexpr double kPatience = 4.0;        // fit periods, between fits where there is little to learn
-constexpr double kShortest = 0.3;        // s, of history for a first fit
-constexpr double kPlainMisfit = 0.1;     // m in kLead seconds, with which plain prediction does
-constexpr double kProven = 0.5;          // m, that a fit may be off by in kLead seconds, whatever plain prediction is
-constexpr double kLongestLead = 2.5;     // s, until which a fit is tried where plain prediction does as well
-constexpr double kUnderstood = 0.25;     // m in kLead seconds, with which a fit that has proved right leaves no puzzle
-constexpr double kBetter = 0.6;          // times plain prediction's misfit, that its own may be
-constexpr double kCurving = 1.0;         // m/s², measured, with which plain prediction will not do for long
-constexpr double kMuchBetter = 0.5;      // the same, noise included, that proves it before kLead seconds are over
-constexpr double kSigmas = 3.0;          // of the estimate that a misfit may be by noise
-constexpr double kExact = 1e-4;          // m, m/s: sigmas below are taken for this
-constexpr double kBeyond = 0.1;          // m, that noise may put a track behind a bound
-constexpr double kTurnSpeed = 0.3;       // m/s, below which a turn is no bounce
+constexpr double kSpacing = 0.05;     // s, between samples at first
+constexpr double kCoarsest = 0.2;     // s, that means of noisy samples are taken over
+constexpr double kFitPeriod = 0.15;   // s
+constexpr double kPatience = 4.0;     // fit periods, between fits where there is little to learn
+constexpr double kShortest = 0.3;     // s, of history for a first fit
+constexpr double kPlainMisfit = 0.1;  // m in kLead seconds, with which plain prediction does
+constexpr double kProven = 0.5;       // m, that a fit may be off by in kLead seconds, whatever plain prediction is
+constexpr double kLongestLead = 2.5;  // s, until which a fit is tried where plain prediction does as well
+constexpr double kUnderstood = 0.25;  // m in kLead seconds, with which a fit that has proved right explains the motion
+constexpr double kBetter = 0.6;       // times plain prediction's misfit, that its own may be
+constexpr double kCurving = 1.0;      // m/s², measured, with which plain prediction will not do for long
+constexpr double kMuchBetter = 0.5;   // the same, noise included, that proves it before kLead seconds are over
+constexpr double kSigmas = 3.0;       // of the estimate that a misfit may be by noise
+constexpr double kExact = 1e-4;       // m, m/s: sigmas below are taken for this
+constexpr double kBeyond = 0.1;       // m, that noise may put a track behind a bound
+constexpr double kTurnSpeed = 0.3;    // m/s, below which a turn is no bounce
 constexpr std::size_t kNoisyWindow = 5;  // samples on either side of a turn
 constexpr double kDoubt = 0.1;           // m/s, that a forecast is worse by than its measure
 constexpr planner::base::HorizonSettings kDefaults;

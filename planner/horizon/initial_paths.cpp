@@ -97,8 +97,8 @@ std::array<Vec3, 4> ways_past(const Encounter& e, const Vec3& heading) {
   return {e.wanted * side - across, -e.wanted * side - across, e.wanted * other - across, -e.wanted * other - across};
 }
 
-/// Undisturbed flight with `displacement` about time `t`: all of it while it counts, none before and after; but what it
-/// falls behind (or hurries ahead) along `heading` stays.
+/// Unobstructed flight with `displacement` about time `t`: all of it while it counts, none before and after; but what
+/// it falls behind (or hurries ahead) along `heading` stays.
 base::TimedPath displaced(const base::TimedPath& unobstructed, std::span<const double> times, double t,
                           const Vec3& displacement, const Vec3& heading) {
   base::TimedPath path;
@@ -155,7 +155,7 @@ void add_ways_through(std::vector<base::TimedPath>& paths, const PathRequest& re
   }
 }
 
-/// Undisturbed flight as far as it would have come at warped times.
+/// Unobstructed flight as far as it would have come at warped times.
 template <typename Warp>
 base::TimedPath warped(const base::TimedPath& unobstructed, std::span<const double> times, const Warp& warp) {
   base::TimedPath path;
@@ -165,7 +165,7 @@ base::TimedPath warped(const base::TimedPath& unobstructed, std::span<const doub
   return path;
 }
 
-/// Undisturbed flight as far as `distance` from its start, and a gentle stop there.
+/// Unobstructed flight as far as `distance` from its start, and a gentle stop there.
 base::TimedPath stopped_short(const base::TimedPath& unobstructed, std::span<const double> times, double distance,
                               const Vec3& heading) {
   base::TimedPath path;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MAVLink messages as MAVSDK hands them over, one after another, into the picture of the autopilot and the table of
+// MAVLink messages as MAVSDK hands them over, one after another, into the state of the autopilot and the table of
 // aircraft: what these say then is finite and bounded, whatever came in. The input is a text; each line is the time
 // since the last one (ms), a message's name and its fields as JSON.
 #include <charconv>

@@ -132,10 +132,10 @@ def replay(arena):
     check(report.stat().st_size > 10000, f"report {report.name}")
 
 
-def rivals(arena):
+def baselines(arena):
     """Who flies the straight line hits something; that flight is replayed as that pilot's, and its log is not taken for jink's."""
-    arena.make("rivals", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
-    table = json.loads((arena.folder / "rivals" / "table.json").read_text())
+    arena.make("baselines", "--families", "gates", "--runs", 1, "--pilots", "straight,jink", "--tiers", "perfect", *QUICK)
+    table = json.loads((arena.folder / "baselines" / "table.json").read_text())
     check([row["pilot"] for row in table["table"]] == ["jink", "straight"], "a row for each pilot")
     failure = next(f for f in table["failures"] if f["pilot"] == "straight")
     check(failure["outcome"] == "collision" and " --pilot straight " in failure["replay"], failure["replay"])
@@ -196,7 +196,7 @@ def written(arena):
 
 
 def test(program):
-    in_scratch(Flights, program, "arena", (bad_usage, files, replay, rivals, same_however, resumed, interrupted, written))
+    in_scratch(Flights, program, "arena", (bad_usage, files, replay, baselines, same_however, resumed, interrupted, written))
 
 
 main(test)

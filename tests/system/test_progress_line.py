@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The live line: rewritten and cut to the width of a terminal, a line now and then elsewhere; a terminal that nobody
+"""The progress line: rewritten and cut to the width of a terminal, a line now and then elsewhere; a terminal that nobody
 reads holds nothing up.
 
 test_live_line.py JINK INSTANCE
@@ -113,7 +113,7 @@ def unread_terminal(arena):
         with open(log, "rb") as file:
             file.seek(max(0, log.stat().st_size - 4000))
             times = [float(t) for t in re.findall(rb'"t":([0-9.]+)', file.read())]
-        return bool(times) and times[-1] > 100  # 500 live lines of 70 characters: more than a terminal holds
+        return bool(times) and times[-1] > 100  # 500 progress lines of 70 characters: more than a terminal holds
     flight.wait_until(lambda: log.exists() and reached(), 240, "100 simulated seconds")
     check(True, "a terminal that nobody reads holds nothing up")
     sim.process.kill()

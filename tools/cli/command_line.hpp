@@ -72,8 +72,8 @@ class Printer {
 };
 
 /// Hands lines to a printer in a thread of its own: a terminal that is stopped or a pipe that nobody reads must not
-/// hold up who says something. Of live lines in a row the newest is printed; what does not fit the queue is left out
-/// and counted. The printer outlives it.
+/// hold up who says something. Of progress lines in a row the newest is printed; what does not fit the queue is left
+/// out and counted. The printer outlives it.
 class BackgroundPrinter {
  public:
   explicit BackgroundPrinter(const Printer& printer);

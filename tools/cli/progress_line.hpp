@@ -50,7 +50,7 @@ class ProgressLine {
   std::optional<double> last_;
 };
 
-/// The live line of a companion's flight. Not thread safe: the flight's loop calls it, and it never waits.
+/// The progress line of a companion's flight. Not thread safe: the flight's loop calls it, and it never waits.
 class FlightProgress final : public bridge::companion::FlightObserver {
  public:
   /// `pace`: the clock by which lines are due; null: the flight's own time. Both outlive this.

@@ -191,7 +191,10 @@ cli::Subcommand add_plan(const cli::Parser& jink, const OtherPlanners* others) {
   cli::Option algorithm =
       app.add_option(
              "--algorithm", options->algorithm,
-             "pmomvo takes --slaves and --sharing, pmomvo-M has M slaves; the others are those it is compared with")
+             std::string(
+                 "pmomvo takes --slaves and --sharing, pmomvo-M has M slaves; the others are those it is compared "
+                 "with") +
+                 (others == nullptr ? "; `jink-lab plan --help` names them" : ""))
           .show_default();
   if (others != nullptr) {
     std::vector<std::string> names{kOwnAlgorithm};

@@ -19,7 +19,7 @@ namespace jink::tools::commands {
 namespace {
 
 constexpr std::size_t kMostShown = 20;     // differences that are listed
-constexpr std::size_t kLivePlans = 25;     // between live lines
+constexpr std::size_t kLivePlans = 25;     // between progress lines
 constexpr std::size_t kNamedMissing = 10;  // parameters that are named
 
 constexpr const char* kOwnPilot = "jink";
@@ -60,7 +60,7 @@ int replay_scenario(const ReplayOptions& options) {
   std::optional<cli::BackgroundPrinter> background(printer);
   FaultPrinter faults(*background);
   const config::Mission mission = sim::flight::mission_of(scenario);
-  const bridge::base::SteadyClock pace;  // of the live line alone: the flight's time is virtual
+  const bridge::base::SteadyClock pace;  // of the progress line alone: the flight's time is virtual
   cli::FlightProgress live(mission, settings.companion.stale_state, *background, &pace);
   loop.flight_observers = {&faults, &live};
   if (options.pilot != kOwnPilot) {
@@ -217,8 +217,10 @@ cli::Subcommand add_replay(const cli::Parser& jink, const OtherPlanners* others)
   app.add_option("--log", options->log, "write a flight log (JSON Lines)").check(cli::writable_file());
   app.add_option("--report", options->report, "write an HTML flight report; needs --log").check(cli::writable_file());
   options->others = others;
-  cli::Option pilot =
-      app.add_option("--pilot", options->pilot, "planner: jink, or a baseline of `jink arena`").show_default();
+  cli::Option pilot = app.add_option("--pilot", options->pilot,
+                                     std::string("planner: jink, or a baseline of `jink arena`") +
+                                         (others == nullptr ? "; `jink-lab replay --help` names them" : ""))
+                          .show_default();
   if (others != nullptr) pilot.one_of(others->pilots);
   options->common.add_to(app);
   app.option("--json").check(cli::writable_file());

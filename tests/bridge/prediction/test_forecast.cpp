@@ -132,7 +132,7 @@ TEST(MotionLearner, ForecastsAnExactTrefoilSoon) {
   for (const double ahead : {0.5, 1.0}) EXPECT_LT((path.position(ahead) - trefoil(1.4 + ahead)).norm(), 0.15) << ahead;
 }
 
-TEST(MotionLearner, PuzzlesUntilItIsUnderstood) {
+TEST(MotionLearner, IsUnexplainedUntilItIsUnderstood) {
   Watched watched;
   watched.watch(trefoil, 0.0);
   EXPECT_TRUE(watched.learned.unexplained(0.0));
@@ -144,7 +144,7 @@ TEST(MotionLearner, PuzzlesUntilItIsUnderstood) {
   EXPECT_FALSE(steady.learned.unexplained(1.0));
 }
 
-TEST(MotionLearner, PuzzlesForAWhileOnly) {
+TEST(MotionLearner, IsUnexplainedForAWhileOnly) {
   // Thrown about at random: never understood.
   Watched watched;
   RandomStream random(5);

@@ -167,7 +167,7 @@ TEST(TrackTable, ABurstOfOldMessagesIsNotTakenForThePresent) {
   EXPECT_GT(table.counts().late_messages, 0U);
 }
 
-// A tracker that hangs and publishes its last picture again and again.
+// A tracker that hangs and publishes its last message again and again.
 TEST(TrackTable, TheSamePictureAgainAndAgainGoesStale) {
   TrackTable table(kCoast);
   feed(table, 10.0, 12.0, 0.03, 0.0);

@@ -299,8 +299,8 @@ TEST(HorizonPlanner, RepeatsTheSearchWithMoreAccelerationAsFarAsItWent) {
   EXPECT_EQ(again.searches, cut.searches);
 }
 
-// Undisturbed flight is the shortest: where it keeps every clearance there is nothing to search for.
-TEST(HorizonPlanner, SearchesNothingWhereUndisturbedFlightIsTheAnswer) {
+// Unobstructed flight is the shortest: where it keeps every clearance there is nothing to search for.
+TEST(HorizonPlanner, SearchesNothingWhereUnobstructedFlightIsTheAnswer) {
   const std::vector<base::Track> far{sphere(1, {8, 9, 2}, Vec3::Zero(), 0.5)};
   const PathRequest r = request(far);
   base::WorkerPool pool(1);

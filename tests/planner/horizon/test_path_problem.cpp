@@ -104,7 +104,7 @@ const std::vector<Vec3> kTargets{{20, 0, 2}, {-12, 9, 2}, {0, 0, 12}, {12, 0, 11
 
 // The follower has a lag: it is up to 12 % fast for a moment, and up to 10 cm beyond a target that lies within the
 // horizon.
-TEST(PathProblem, ZeroVariablesAreUndisturbedStraightFlight) {
+TEST(PathProblem, ZeroVariablesAreUnobstructedStraightFlight) {
   for (const Vec3& target : kTargets) {
     double cruise = 0.0;
     base::TimedPath path;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the live line says of a flight, and when.
+// What the progress line says of a flight, and when.
 #include "tools/cli/progress_line.hpp"
 
 #include <gtest/gtest.h>

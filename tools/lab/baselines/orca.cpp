@@ -11,10 +11,10 @@
 namespace jink::tools::lab::baselines {
 namespace {
 
-constexpr double kShort = 1e-9;        // m, m/s
-constexpr double kUndisturbed = 1e-6;  // m/s
-constexpr double kToTheRight = 0.1;    // of the wished velocity
-constexpr double kSlow = 0.3;          // of it
+constexpr double kShort = 1e-9;         // m, m/s
+constexpr double kUnobstructed = 1e-6;  // m/s
+constexpr double kToTheRight = 0.1;     // of the wished velocity
+constexpr double kSlow = 0.3;           // of it
 
 /// A direction square to the unit vector `axis`: of `wished` where that has one, else level, else north.
 Vec3 square_to(const Vec3& axis, const Vec3& wished) {
@@ -93,11 +93,11 @@ planner::verify::Plan OrcaPilot::plan(const bridge::companion::PlanJob& job) {
   };
   Vec3 chosen = nearest_to(wished);
   // Exactly head on, ORCA only slows down: what nearly stands keeps to the right.
-  if ((chosen - wished).norm() >= kUndisturbed && chosen.norm() < kSlow * wished.norm())
+  if ((chosen - wished).norm() >= kUnobstructed && chosen.norm() < kSlow * wished.norm())
     chosen = nearest_to(wished + kToTheRight * wished.cross(Vec3::UnitZ()));
 
   PathBuilder motion(request, settings_, urgent ? hardest_acceleration(request, settings_) : normal);
-  if ((chosen - wished).norm() < kUndisturbed) {
+  if ((chosen - wished).norm() < kUnobstructed) {
     motion.fly_to_target();
   } else {
     while (motion.t() < orca_.time_horizon) motion.steer(chosen);

@@ -67,7 +67,7 @@ BENCHMARK(path_prepare)
     ->Arg(2000)
     ->Unit(benchmark::kMicrosecond);
 
-/// Undisturbed flight to the target.
+/// Unobstructed flight to the target.
 void path_verify(benchmark::State& state) {
   const Scene scene(state.range(0));
   planner::horizon::PathProblem problem(scene.settings);

@@ -55,7 +55,7 @@ struct Progress {
   std::string text;  ///< "12 of 40 flights"
 };
 
-/// The live line, or now and then a plain one. The printer outlives it.
+/// The progress line, or now and then a plain one. The printer outlives it.
 class ProgressPrinter {
  public:
   explicit ProgressPrinter(const cli::Printer& printer) : printer_(printer) {}
