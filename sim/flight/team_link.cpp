@@ -22,7 +22,7 @@ class TeamLink::Port final : public bridge::team::IntentTransport {
     if (letter == box_.end() || !options_.listens) return false;
     // Stamped with the sender's system time, read against this one's.
     const double age = link_.now_ - letter->sent + options_.clock_ahead - letter->clock_ahead;
-    message = {letter->writer, link_.now_, age, letter->intent};
+    message = {{letter->writer, link_.now_, age}, letter->intent};
     box_.erase(letter);
     return true;
   }
