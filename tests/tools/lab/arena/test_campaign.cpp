@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "config/scenario.hpp"
+#include "tests/support/repetitions.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/lab/arena/campaign.hpp"
 #include "tools/lab/arena/flight_runner.hpp"
@@ -76,9 +77,10 @@ std::string text_of(Results results) {
 TEST(Campaign, IsTheSameAtAnyThreadCountAndInShards) {
   const Folder folder;
   CampaignSettings settings = small(2);
+  settings.tiers = support::repetitions<std::string>({"perfect", "realistic"});
   const Flown one = fly_in(folder.path() / "one", settings, 1);
   EXPECT_TRUE(one.complete);
-  EXPECT_EQ(one.results.flights.size(), 8U);
+  EXPECT_EQ(one.results.flights.size(), 4U * settings.tiers.size());
   EXPECT_EQ(text_of(fly_in(folder.path() / "four", settings, 4).results), text_of(one.results));
   std::vector<fs::path> parts;
   for (settings.shard = {1, 2}; settings.shard.number <= 2; ++settings.shard.number) {
@@ -90,7 +92,8 @@ TEST(Campaign, IsTheSameAtAnyThreadCountAndInShards) {
 
 TEST(Campaign, GoesOnAfterAnInterruptionAndAfterACutLine) {
   const Folder folder;
-  const CampaignSettings settings = small(2);
+  CampaignSettings settings = small(2);
+  settings.tiers = support::repetitions<std::string>({"perfect", "realistic"});
   const Flown whole = fly_in(folder.path() / "whole", settings, 2);
   const fs::path out = folder.path() / "parts";
   const Flown first = fly_in(out, settings, 2, 3);
