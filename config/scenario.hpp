@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scenario as the file describes it: plain values, checked. What moves how in time is sim/obstacle_models.
+// A scenario as the file describes it: plain values, checked. What moves how in time is sim/world/obstacle_models.
 #pragma once
 
 #include <filesystem>

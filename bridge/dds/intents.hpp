@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The team's intents over DDS, by Fast DDS. The type on the wire is ROS 2's (bridge/idl), so that a ROS node, or any
-// other DDS program, can be a vehicle of the team.
+// The team's intents over DDS, by Fast DDS. The type on the wire is ROS 2's (bridge/dds/idl), so that a ROS node, or
+// any other DDS program, can be a vehicle of the team.
 #pragma once
 
 #include <cstddef>

@@ -27,7 +27,7 @@ class DdsParticipant {
 
   [[nodiscard]] int domain() const;
 
-  class Impl;  ///< bridge/dds_support.hpp
+  class Impl;  ///< bridge/dds/payload_io.hpp
   /// For what watches discovery itself (dds_discovery).
   explicit DdsParticipant(std::unique_ptr<Impl> impl);
   [[nodiscard]] Impl& impl() { return *impl_; }

@@ -48,7 +48,7 @@ struct DdsVehicleCounts {
 /// never block.
 ///
 /// State: both topics of vehicle_local_position are read, best effort and volatile, which matches PX4's best effort,
-/// transient local writers and any other; the payload's length tells its version (bridge/dds_px4_messages). Stamps are
+/// transient local writers and any other; the payload's length tells its version (bridge/cdr/px4_messages). Stamps are
 /// `clock` at reception. Where several writers publish, the first one heard is followed until it has been silent for
 /// kWriterSilence_s: two autopilots are never mixed. When DDS falls silent the stamp stays and ages.
 class DdsVehicleLink final : public vehicle::VehicleLink {

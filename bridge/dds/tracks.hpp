@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Obstacle tracks over DDS, by Fast DDS: what the companion reads, and what the simulator and tools write. The type on
-// the wire is ROS 2's (bridge/idl), so that a ROS node, or any other DDS program, can stand at either end.
+// the wire is ROS 2's (bridge/dds/idl), so that a ROS node, or any other DDS program, can stand at either end.
 #pragma once
 
 #include <cstdint>

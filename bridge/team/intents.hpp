@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a vehicle of the team says of itself: where it is going to be. The transport is an interface with two
-// implementations: dds_intents, and sim/team_link in virtual time.
+// implementations: dds_intents, and sim/flight/team_link in virtual time.
 #pragma once
 
 #include <cstddef>

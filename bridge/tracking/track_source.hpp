@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where obstacle tracks come from. Two implementations: dds_tracks and the virtual-time source of sim/closed_loop.
+// Where obstacle tracks come from. Two implementations: dds_tracks and the virtual-time source of
+// sim/flight/closed_loop.
 #pragma once
 
 #include <cstdint>

@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "bridge/prediction/prediction.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 
@@ -192,16 +193,13 @@ std::vector<planner::base::Track> TrackTable::predict(double now, double trust,
   tracks.reserve(entries_.size());
   for (const auto& [key, entry] : entries_) {
     if (entry.is_self) continue;
-    const double age = std::max(0.0, entry.track.age(now));
-    planner::base::Track track = planner::geometry::predict(entry.track.value, age, trust);
-    track.age = age;
     if (forecasts != nullptr && entry.learned) {
       if (auto forecast = entry.learned->forecast(now, entry.track.stamp, entry.track.value, room_)) {
         forecast->track = tracks.size();
         forecasts->push_back(std::move(*forecast));
       }
     }
-    tracks.push_back(track);
+    tracks.push_back(prediction::predict(entry.track, now, trust));
   }
   if (writers_.size() > 1) make_ids_unique(tracks);
   return tracks;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The companion's view of an autopilot. Two implementations: mavsdk_link (MAVLink through MAVSDK) and the virtual-time
-// link of sim/closed_loop. Frame: local ENU from the autopilot's local origin; yaw counter-clockwise from east.
+// link of sim/flight/closed_loop. Frame: local ENU from the autopilot's local origin; yaw counter-clockwise from east.
 #pragma once
 
 #include <cstdint>

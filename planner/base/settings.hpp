@@ -24,7 +24,7 @@ enum class Axis {
 enum class Operators {
   kPrinted,    ///< as the paper prints them
   kCommon,     ///< the step of the circulating MOMVO code, which depends on where the origin is; Eq. (20) mended
-  kCorrected,  ///< mended, see planner/multiverse.hpp
+  kCorrected,  ///< mended, see planner/optimizer/multiverse.hpp
   kAdaptive    ///< corrected, and a second kind of move, narrow; the kind that succeeds is drawn more often
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Collision tests of the objective functions: the paper's line test and the swept test. The check of finished plans is
-// planner/verifier, which shares nothing with this file.
+// planner/verify/verifier, which shares nothing with this file.
 #pragma once
 
 #include "planner/base/types.hpp"

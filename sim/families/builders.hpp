@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the builders of world families share. For sim/world_families*.cpp alone.
+// What the builders of world families share. For sim/families/families*.cpp alone.
 //
 // Compilers differ in the order in which they evaluate operands and arguments, so no expression draws more than once
 // (but in braces, which go from left to right).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The timeline of a scenario's faults: given the time, what is in force. Pure: no socket, no clock, nothing at random.
-// Who does what they say: sim/track_faults (tracks), sim/vehicle_faults (autopilot), sim/impairment (link).
+// Who does what they say: sim/faults/track_faults (tracks), sim/faults/vehicle_faults (autopilot),
+// sim/faults/impairment (link).
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bad link: packets that are lost, late or out of order. In simulated time, for datagrams (sim/mavlink_link) and for
-// what stands for them in virtual time (sim/closed_loop).
+// A bad link: packets that are lost, late or out of order. In simulated time, for datagrams (sim/mavlink/link) and for
+// what stands for them in virtual time (sim/flight/closed_loop).
 #pragma once
 
 #include <algorithm>

@@ -43,10 +43,10 @@ struct ClosedLoopResult {
 
 /// Flies from rest in the air at `start`, t = 0, to the target, until it is reached, something is hit, the world is
 /// left or the time limit passes. Further vehicles of the scenario fly too, each with a companion of its own; they tell
-/// each other their intents (sim/team_link) and all get the same tracks, as from `jink sim`. Whoever is done hangs
-/// where it is; the flight goes on until all are, or one hits something (an obstacle, another vehicle) or leaves the
-/// world. The scenario's faults happen on the way, each beginning and end an event `fault`. The flight observers are
-/// told what the first vehicle's companion does, the truth observers of all vehicles. Bit-identical for the same
+/// each other their intents (sim/flight/team_link) and all get the same tracks, as from `jink sim`. Whoever is done
+/// hangs where it is; the flight goes on until all are, or one hits something (an obstacle, another vehicle) or leaves
+/// the world. The scenario's faults happen on the way, each beginning and end an event `fault`. The flight observers
+/// are told what the first vehicle's companion does, the truth observers of all vehicles. Bit-identical for the same
 /// arguments at any thread count.
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options);

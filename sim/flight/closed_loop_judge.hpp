@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Judges a flight in virtual time, of one vehicle or several: from the air at the starts until all are done or one has
-// failed. For sim/closed_loop alone; the simulator in real time has sim/judge.
+// failed. For sim/flight/closed_loop alone; the simulator in real time has sim/flight/simulator_judge.
 #pragma once
 
 #include <cstddef>

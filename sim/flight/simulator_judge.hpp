@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the true motion of a simulation's vehicles means: hit, left, reached. For the simulator in real time; in virtual
-// time, where flights begin in the air and end with the companions, it is sim/flight_judge.
+// time, where flights begin in the air and end with the companions, it is sim/flight/closed_loop_judge.
 #pragma once
 
 #include <span>

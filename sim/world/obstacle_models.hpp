@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where an obstacle's reference point is at any time: the true motion, in closed form, and bounds on it. What shape
-// hangs on that point is sim/shapes.
+// hangs on that point is sim/world/shapes.
 #pragma once
 
 #include "config/scenario.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An obstacle's true shape, placed relative to its moving reference point: how far a point or a straight way is from
-// it, and the sphere that the planner takes for it. Where the reference point goes is sim/obstacle_models.
+// it, and the sphere that the planner takes for it. Where the reference point goes is sim/world/obstacle_models.
 #pragma once
 
 #include "config/scenario.hpp"

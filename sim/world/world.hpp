@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The simulated world: where every obstacle truly is, and whether the vehicle touches one. It is the judge; planner and
-// bridge never see it, only what sim/sensing measures of it.
+// bridge never see it, only what sim/world/sensing measures of it.
 #pragma once
 
 #include <cstddef>

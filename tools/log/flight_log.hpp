@@ -50,7 +50,7 @@ struct FlightLogOptions {
 /// position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other vehicles
 /// (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times from there on.
 /// A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and parameters the plan
-/// can be made again (tools/flight_replay.hpp).
+/// can be made again (tools/log/flight_replay.hpp).
 ///
 /// The observers may be called from one thread at a time.
 class FlightLog final : public bridge::companion::FlightObserver, public sim::world::TruthObserver {

@@ -26,7 +26,8 @@ struct RecordedPlan {
   planner::base::TimedPath path;  ///< times in the companion's clock; velocities and accelerations are not recorded
 };
 
-/// Reads the plans of a jink-log/1 file (tools/flight_log.hpp), checked like any input: what it gives can be planned.
+/// Reads the plans of a jink-log/1 file (tools/log/flight_log.hpp), checked like any input: what it gives can be
+/// planned.
 class FlightRecording {
  public:
   /// Reads the header. Throws std::runtime_error "FILE: ..." or "FILE:LINE: ...".

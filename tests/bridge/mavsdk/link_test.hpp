@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The link over loopback UDP against tests/bridge/px4_peer.py, which shares no code with it (pymavlink) and answers as
-// PX4 does.
+// The link over loopback UDP against tests/bridge/mavsdk/px4_peer.py, which shares no code with it (pymavlink) and
+// answers as PX4 does.
 #pragma once
 
 #include <arpa/inet.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The other end of the wire for the tests of bridge/mavsdk_link: what PX4 says and how it answers, by pymavlink.
+"""The other end of the wire for the tests of bridge/mavsdk/link: what PX4 says and how it answers, by pymavlink.
 
 Not a simulator: nothing flies. The vehicle stands still where the constants below put it, and does what it is told at
 once. What it says and how it acknowledges follow recordings of PX4 1.17 (two acknowledgements for DO_SET_MODE, the

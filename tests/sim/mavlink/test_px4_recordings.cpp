@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plays the companion's half of two recorded flights of PX4's SITL into the simulator's endpoint, in virtual time, and
-// compares what the simulator answers with what PX4 answered. tests/sim/data: tlogs of pymavlink, both directions.
+// compares what the simulator answers with what PX4 answered. tests/sim/mavlink/data: tlogs of pymavlink, both
+// directions.
 #include <gtest/gtest.h>
 
 #include <cmath>

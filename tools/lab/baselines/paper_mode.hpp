@@ -9,8 +9,8 @@
 namespace jink::tools::lab::baselines {
 
 /// Problem (16) of [Paper] with PMOMVO, waypoint after waypoint from where the vehicle is to the target, for the
-/// obstacles as their tracks are now; Eq. (2) to (17), see planner/paper_planner.hpp. The margin is the flight's where
-/// that is more than the paper mode's own.
+/// obstacles as their tracks are now; Eq. (2) to (17), see planner/paper/paper_planner.hpp. The margin is the flight's
+/// where that is more than the paper mode's own.
 ///
 /// differs: the paper's vehicle is at cruise speed and on its path without delay; flown as they are, its paths hit what
 /// they pass. So the time that the run-up costs is regarded (the obstacles are planned with as they are that much

@@ -6,9 +6,9 @@
 
 namespace jink::tools::lab::presentation {
 
-/// tools/study/paper_numbers.csv. Valid for the program's life, like the others.
+/// tools/lab/study/paper_numbers.csv. Valid for the program's life, like the others.
 std::string_view paper_numbers_csv();
-/// tools/study/presentation/report.css.
+/// tools/lab/presentation/report.css.
 std::string_view report_css();
 
 }  // namespace jink::tools::lab::presentation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers that the paper prints, as data: tools/study/paper_numbers.csv, compiled in.
+// The numbers that the paper prints, as data: tools/lab/study/paper_numbers.csv, compiled in.
 #pragma once
 
 #include <optional>

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The plain prediction of a track. What has been learned of a track's motion goes beyond it: motion_learner, forecast.
+#pragma once
+
+#include "bridge/base/stamped.hpp"
+#include "planner/base/types.hpp"
+
+namespace jink::bridge::prediction {
+
+/// The track at `now`, which is its stamp or later: constant acceleration for at most `trust` seconds, then constant
+/// velocity. Its age counts from the stamp.
+[[nodiscard]] planner::base::Track predict(const base::Stamped<planner::base::Track, base::Frame::kLocal>& track,
+                                           double now, double trust);
+
+}  // namespace jink::bridge::prediction
