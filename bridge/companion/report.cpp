@@ -118,8 +118,7 @@ void FlightReporter::sending(double now, bool works) {
 void FlightReporter::announce(double now, const supervisor::Supervisor& supervisor, Intake& intake, double margin,
                               double tracking_error) {
   if (team::Team* team = intake.team()) {
-    for (const team::Team::Notice& take_notices : team->take_notices(now))
-      event(now, take_notices.name, take_notices.detail);
+    for (const team::Team::Notice& notice : team->take_notices(now)) event(now, notice.name, notice.detail);
   }
   announce_phase(now, supervisor, intake.state());
   if (changed(said_.waiting, supervisor.waiting_for()) && !said_.waiting.empty()) event(now, "waiting", said_.waiting);

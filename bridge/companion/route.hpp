@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bridge/vehicle/vehicle_link.hpp"
+#include "planner/base/types.hpp"
 
 namespace jink::bridge::companion {
 
