@@ -18,6 +18,8 @@ constexpr Range kSize = above(0, 1e3);
 constexpr Range kAngle = within(1e6);
 constexpr std::size_t kMostObstacles = 10000;
 constexpr std::size_t kMostPoints = 10000;
+constexpr std::array<std::string_view, 2> kSensedFrom = {"world", "vehicle"};  // SensedFrom's values
+constexpr std::array<std::string_view, 2> kEstimates = {"px4", "none"};
 constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 
 Vec3 read_edges(const Value& value) {
@@ -141,7 +143,7 @@ Motion read_motion(const Map& obstacle) {
 }
 
 Sensing read_sensing(const Value& value) {
-  const Map map(value, {"range", "rate", "delay", "position_noise", "velocity_noise", "dropout"});
+  const Map map(value, {"range", "rate", "delay", "position_noise", "velocity_noise", "dropout", "sensed_from"});
   Sensing sensing;
   sensing.range = map.number_or("range", above(0, 1e6), sensing.range);
   sensing.rate = map.number_or("rate", above(0, 1000), sensing.rate);
@@ -149,6 +151,7 @@ Sensing read_sensing(const Value& value) {
   sensing.position_noise = map.number_or("position_noise", closed(0, 1000), sensing.position_noise);
   sensing.velocity_noise = map.number_or("velocity_noise", closed(0, 1000), sensing.velocity_noise);
   sensing.dropout = map.number_or("dropout", below(0, 1), sensing.dropout);
+  if (const auto from = map.find("sensed_from")) sensing.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
   return sensing;
 }
 
@@ -162,8 +165,13 @@ Wind read_wind(const Value& value) {
 }
 
 EstimateErrors read_estimate(const Value& value) {
-  const Map map(value, {"position_noise", "velocity_noise", "drift", "drift_time"});
   EstimateErrors errors;
+  if (!value.is_map()) {
+    errors.px4 = value.choice(kEstimates) == 0;
+    return errors;
+  }
+  const Map map(value, {"position_noise", "velocity_noise", "drift", "drift_time"});
+  errors.px4 = false;
   errors.position_noise = map.number_or("position_noise", closed(0, 100), errors.position_noise);
   errors.velocity_noise = map.number_or("velocity_noise", closed(0, 100), errors.velocity_noise);
   errors.drift = map.number_or("drift", closed(0, 1000), errors.drift);
@@ -248,6 +256,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
     scenario.obstacles.push_back({std::move(shape), read_motion(obstacle)});
   }
   if (const auto further = map.find("vehicles")) scenario.vehicles = read_further(*further, scenario, file, vehicles);
+  if (!scenario.vehicles.empty() && scenario.sensing.sensed_from == SensedFrom::kVehicle)
+    map.at("sensing", "").fail("has tracks sensed from one vehicle, and here are several; expected sensed_from: world");
   if (const auto wind = map.find("wind")) scenario.wind = read_wind(*wind);
   if (const auto estimate = map.find("estimate")) scenario.estimate = read_estimate(*estimate);
   if (const auto faults = map.find("faults"))

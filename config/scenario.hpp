@@ -74,6 +74,10 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// In which frame tracks are right: an external tracker's in the world's; onboard perception's relative to the vehicle,
+/// so that they carry the error of its estimate along.
+enum class SensedFrom { kWorld, kVehicle };
+
 /// How the world is measured: what the tracks look like.
 struct Sensing {
   double range = planner::base::kInfinity;  ///< from the vehicle's centre to the obstacle's surface
@@ -82,6 +86,7 @@ struct Sensing {
   double position_noise = 0.0;              ///< standard deviation per axis
   double velocity_noise = 0.0;              ///< standard deviation per axis
   double dropout = 0.0;                     ///< probability that a track is missing from a message
+  SensedFrom sensed_from = SensedFrom::kWorld;
   bool operator==(const Sensing&) const = default;
 };
 
@@ -93,8 +98,10 @@ struct Wind {
   bool operator==(const Wind&) const = default;
 };
 
-/// What the autopilots' estimates get wrong: standard deviations per axis.
+/// What the autopilots' estimates get wrong: as PX4's filter does on its simulated sensors (`estimate: px4`), nothing
+/// (`none`), or a wander of these standard deviations per axis (a map).
 struct EstimateErrors {
+  bool px4 = true;
   double position_noise = 0.0;  ///< m
   double velocity_noise = 0.0;  ///< m/s
   double drift = 0.0;           ///< m, of the slow wander of the position
@@ -134,8 +141,8 @@ struct Scenario {
 ///
 /// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
 /// velocity and acceleration of a linear one. Optional: time_limit, world (with both min and max), sensing and each of
-/// its keys, vehicles (further ones, at most 9, each with start and target, and vehicle where it is another one), wind,
-/// estimate and each of their keys, faults (a list, at most 1000; kinds and keys as in config/faults.hpp).
+/// its keys, vehicles (further ones, at most 9, each with start and target, and vehicle where it is another one), wind
+/// and each of its keys, estimate (px4, the default, none, or a map of any of its keys), faults (a list, at most 1000; kinds and keys as in config/faults.hpp).
 /// Checked: starts and targets lie in the world, and no two starts are above each other so that the vehicles would
 /// touch on the ground; a bounce starts between min and max, which may coincide only on an axis without velocity;
 /// waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds and accelerations 1e3 per axis,

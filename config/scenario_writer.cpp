@@ -108,7 +108,9 @@ std::string sensing_text(const Sensing& sensing) {
   map.add_unless(defaults.delay, "delay", sensing.delay);
   map.add_unless(defaults.position_noise, "position_noise", sensing.position_noise);
   map.add_unless(defaults.velocity_noise, "velocity_noise", sensing.velocity_noise);
-  return map.add_unless(defaults.dropout, "dropout", sensing.dropout).text();
+  map.add_unless(defaults.dropout, "dropout", sensing.dropout);
+  if (sensing.sensed_from != defaults.sensed_from) map.add("sensed_from", std::string("vehicle"));
+  return map.text();
 }
 
 std::string wind_text(const Wind& wind) {
@@ -120,6 +122,7 @@ std::string wind_text(const Wind& wind) {
 
 std::string estimate_text(const EstimateErrors& errors) {
   const EstimateErrors defaults;
+  if (errors.px4) return "px4";
   FlowMap map;
   map.add_unless(defaults.position_noise, "position_noise", errors.position_noise);
   map.add_unless(defaults.velocity_noise, "velocity_noise", errors.velocity_noise);
@@ -145,7 +148,8 @@ std::string to_yaml(const Scenario& scenario) {
   };
   section("sensing", sensing_text(scenario.sensing));
   section("wind", wind_text(scenario.wind));
-  section("estimate", estimate_text(scenario.estimate));
+  const std::string estimate = estimate_text(scenario.estimate);
+  line("estimate", estimate == "{}" ? "none" : estimate);
   out += scenario.obstacles.empty() ? "obstacles: []\n" : "obstacles:\n";
   for (const Obstacle& obstacle : scenario.obstacles) {
     FlowMap map;

@@ -32,11 +32,18 @@ vehicle::FlightMode flight_mode(PilotMode mode) {
 
 }  // namespace
 
+world::EstimateError estimate_error(const vehicle::Autopilot& autopilot) {
+  const vehicle::Motion& estimated = autopilot.estimated_motion();
+  const vehicle::Motion& truth = autopilot.true_motion();
+  return {estimated.position - truth.position, estimated.velocity - truth.velocity};
+}
+
 void set_conditions(const config::Scenario& scenario, std::uint64_t seed, int vehicle,
                     vehicle::AutopilotOptions& options) {
   options.wind.mean = scenario.wind.mean;
   options.wind.gust = scenario.wind.gust;
   options.wind.gust_time = scenario.wind.gust_time;
+  options.estimate.ins = scenario.estimate.px4;
   options.estimate.position_noise = scenario.estimate.position_noise;
   options.estimate.velocity_noise = scenario.estimate.velocity_noise;
   options.estimate.drift = scenario.estimate.drift;

@@ -7,8 +7,12 @@
 #include "config/scenario.hpp"
 #include "sim/faults/fault_timeline.hpp"
 #include "sim/vehicle/autopilot.hpp"
+#include "sim/world/sensing.hpp"
 
 namespace jink::sim::faults {
+
+/// Estimate less truth, now.
+[[nodiscard]] world::EstimateError estimate_error(const vehicle::Autopilot& autopilot);
 
 /// Wind and estimate of the scenario. The seed is that of the run and the vehicle's number, so that each vehicle's
 /// gusts and errors are its own.

@@ -134,7 +134,7 @@ class Flight {
       truths.push_back(member->truth());
     }
     const bool ended = judge_.watch(t, truths);
-    for (const auto& member : members_) member->tracks.advance(t, truths);
+    for (const auto& member : members_) member->tracks.advance(t, truths, faults::estimate_error(member->autopilot));
     if (turn || ended) {
       for (world::TruthObserver* observer : options_.truth_observers) observer->on_truth(t, truths, world_);
     }

@@ -182,7 +182,10 @@ void Simulator::judge() {
 void Simulator::publish() {
   std::vector<Vec3> sensors = positions();
   if (sensors.empty()) sensors.push_back(world_.scenario().start);
-  sensing_.step(now_, world_, sensors, clock_start_.value_or(planner::base::kInfinity));
+  // One publisher for all: tracks sensed from the vehicle are those of a lone one.
+  const world::EstimateError error =
+      vehicles_.empty() ? world::EstimateError{} : faults::estimate_error(vehicles_.front().autopilot);
+  sensing_.step(now_, world_, sensors, clock_start_.value_or(planner::base::kInfinity), error);
   world::TrackMessage message;
   while (sensing_.poll(now_, message)) {
     if (!track_faults_.apply(timeline_, world_, truth(), message)) continue;

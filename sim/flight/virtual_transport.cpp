@@ -199,12 +199,13 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
 VirtualTracks::VirtualTracks(const world::World& world, const faults::FaultTimeline& timeline, std::uint64_t seed)
     : world_(world), timeline_(timeline), pipeline_(world.scenario().sensing, seed), faults_(seed) {}
 
-void VirtualTracks::advance(double now, std::span<const world::VehicleTruth> vehicles) {
+void VirtualTracks::advance(double now, std::span<const world::VehicleTruth> vehicles,
+                            const world::EstimateError& error) {
   now_ = now;
   vehicles_.assign(vehicles.begin(), vehicles.end());
   std::vector<Vec3> positions;
   for (const world::VehicleTruth& vehicle : vehicles) positions.push_back(vehicle.position);
-  pipeline_.step(now, world_, positions);
+  pipeline_.step(now, world_, positions, 0.0, error);
 }
 
 bool VirtualTracks::poll(bridge::tracking::TrackMessage& message) {

@@ -89,7 +89,8 @@ class VirtualTracks final : public bridge::tracking::TrackSource {
   VirtualTracks(const world::World& world, const faults::FaultTimeline& timeline, std::uint64_t seed);
 
   /// Goes on to `now`, with the vehicles as they are then, by number: what is within range of one is in the message.
-  void advance(double now, std::span<const world::VehicleTruth> vehicles);
+  /// `error` is that of the vehicle whose tracks these are.
+  void advance(double now, std::span<const world::VehicleTruth> vehicles, const world::EstimateError& error = {});
   /// The same for one vehicle.
   void advance(double now, const world::VehicleTruth& vehicle) { advance(now, std::span(&vehicle, 1)); }
 

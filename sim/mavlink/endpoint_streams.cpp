@@ -411,7 +411,7 @@ void MavlinkEndpoint::Impl::send_estimator_status(MavlinkLink& link) {
   message.mag_ratio = message.hagl_ratio = 0.1F;
   message.tas_ratio = kNan;
   message.pos_horiz_accuracy = real(autopilot_.estimator().horizontal_accuracy());
-  message.pos_vert_accuracy = 0.03F;
+  message.pos_vert_accuracy = real(autopilot_.estimator().vertical_accuracy());
   link.send(mavlink_msg_estimator_status_encode_status, message);
 }
 

@@ -58,7 +58,7 @@ Autopilot::Autopilot(const AutopilotOptions& options)
       parameters_(options.limits, options.system_id),
       model_(options.limits, start_position(options), options.ground_height, options.yaw, options.cascade),
       wind_(options.wind, options.seed),
-      estimator_(options.estimate, options.seed, model_.motion()),
+      estimator_(options.estimate, options.seed, model_.motion(), options.airborne),
       home_(start_position(options).x(), start_position(options).y(), options.ground_height),
       hold_position_(start_position(options)) {
   if (!options.airborne) return;

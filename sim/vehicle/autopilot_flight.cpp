@@ -61,9 +61,13 @@ void Autopilot::step() {
   }
   wind_.step();
   model_.set_wind(wind_.velocity());
-  if (!estimator_.exact()) model_.set_estimate(estimated_motion().position, estimated_motion().velocity);
+  if (!estimator_.exact()) {
+    model_.set_estimate(estimated_motion().position, estimated_motion().velocity, estimator_.attitude_error());
+  }
   model_.step();
-  estimator_.step(model_.motion(), parameters_.integer("EKF2_NOAID_TOUT") / kMicroseconds);
+  const bool at_rest = model_.on_ground() && model_.motors() != Motors::kFlying;
+  estimator_.step(model_.motion(), parameters_.integer("EKF2_NOAID_TOUT") / kMicroseconds, at_rest,
+                  height_above_ground());
   update_landed();
   if (armed_) update_auto_disarm();
   update_home();

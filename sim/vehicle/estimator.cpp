@@ -12,7 +12,9 @@ constexpr double kNoiseTime = 1.5;      // s, from the recordings: 1 cm/s from s
 constexpr double kWalk = 0.1;           // m/s per square root of a second without GPS: this model's choice
 constexpr double kRecoveryTime = 1.0;   // s, in which GPS takes the errors of dead reckoning away
 constexpr double kReckonedNone = 1e-4;  // m and m/s: gone
+constexpr double kPi = 3.14159265358979323846;
 constexpr double kAccuracy = 0.29;      // m, as PX4's SITL reports
+constexpr double kHeightAccuracy = 0.03;
 
 // Names of their own among the streams of a seed.
 constexpr std::uint64_t kPositionStream = 0x706f736e;
@@ -31,13 +33,14 @@ const EstimateErrors& checked(const EstimateErrors& errors) {
 
 }  // namespace
 
-Estimator::Estimator(const EstimateErrors& errors, std::uint64_t seed, const Motion& truth)
+Estimator::Estimator(const EstimateErrors& errors, std::uint64_t seed, const Motion& truth, bool airborne)
     : position_noise_(checked(errors).position_noise, kNoiseTime, kStep,
                       planner::base::RandomStream(seed, kPositionStream)),
       velocity_noise_(errors.velocity_noise, kNoiseTime, kStep, planner::base::RandomStream(seed, kVelocityStream)),
       drift_(errors.drift, errors.drift_time, kStep, planner::base::RandomStream(seed, kDriftStream)),
       walk_(seed, kWalkStream),
-      exact_(errors.position_noise == 0.0 && errors.velocity_noise == 0.0 && errors.drift == 0.0) {
+      exact_(!errors.ins && errors.position_noise == 0.0 && errors.velocity_noise == 0.0 && errors.drift == 0.0) {
+  if (errors.ins) ins_.emplace(seed, truth, airborne);
   update(truth);
 }
 
@@ -51,6 +54,7 @@ void Estimator::set_gps(bool available) {
   }
   if (valid_) return;
   valid_ = true;
+  if (ins_) ins_->reset();
   motion_.position -= reckoned_position_;
   motion_.velocity -= reckoned_velocity_;
   reckoned_position_.setZero();
@@ -74,11 +78,12 @@ void Estimator::restart(const Vec3& origin, const Motion& truth) {
   reckoned_velocity_.setZero();
   away_ = 0.0;
   resets_ = 0;
+  if (ins_) ins_->reset();
   update(truth);
 }
 
 void Estimator::reckon() {
-  if (!gps_) {
+  if (!gps_ && !ins_) {
     const double walk = kWalk * std::sqrt(kStep);
     const double x = walk_.normal();
     reckoned_velocity_ += Vec3(walk * x, walk * walk_.normal(), 0.0);
@@ -94,7 +99,8 @@ void Estimator::reckon() {
   reckoned_velocity_ *= 1.0 - kStep / kRecoveryTime;
 }
 
-void Estimator::step(const Motion& truth, double timeout) {
+void Estimator::step(const Motion& truth, double timeout, bool at_rest, double height) {
+  if (ins_) ins_->step(truth, {.at_rest = at_rest, .gnss = gps_, .height = height});
   position_noise_.step();
   velocity_noise_.step();
   drift_.step();
@@ -111,10 +117,21 @@ void Estimator::update(const Motion& truth) {
   if (exact_) return;
   motion_.position += position_noise_.value() + drift_.value() + jumped_ + reckoned_position_ - origin_;
   motion_.velocity += velocity_noise_.value() + reckoned_velocity_;
+  if (!ins_) return;
+  motion_.position += ins_->position();
+  motion_.velocity += ins_->velocity();
+  const Vec3 error = ins_->attitude();
+  if (error.norm() > 0.0) motion_.attitude = Eigen::AngleAxisd(error.norm(), error.normalized()) * truth.attitude;
+  motion_.yaw = std::remainder(truth.yaw + error.z(), 2.0 * kPi);
 }
 
 double Estimator::horizontal_accuracy() const {
+  if (ins_) return ins_->horizontal_accuracy();
   return kAccuracy + kWalk * away_ * std::sqrt(away_);
+}
+
+double Estimator::vertical_accuracy() const {
+  return ins_ ? ins_->vertical_accuracy() : kHeightAccuracy;
 }
 
 }  // namespace jink::sim::vehicle

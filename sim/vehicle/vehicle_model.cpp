@@ -209,7 +209,8 @@ void VehicleModel::step() {
   next_delayed_ = (next_delayed_ + 1) % delayed_.size();
   if (motors_ == Motors::kFlying) {
     command_ = control(delayed);
-    apply_lags(command_);
+    // The thrust points where the estimated attitude says, which is off.
+    apply_lags(command_ - attitude_error_.cross(command_ + Vec3(0, 0, kGravity)));
   }
   integrate();
   turn(delayed);

@@ -98,10 +98,12 @@ class VehicleModel {
   void set_motors(Motors motors);
   /// The velocity of the air: drag is against it.
   void set_wind(const Vec3& velocity) { wind_ = velocity; }
-  /// What the cascade flies on from now on instead of the true position and velocity.
-  void set_estimate(const Vec3& position, const Vec3& velocity) {
+  /// What the cascade flies on from now on instead of the true position, velocity and attitude; the last as the
+  /// rotation vector (rad, ENU) from the true to the estimated one.
+  void set_estimate(const Vec3& position, const Vec3& velocity, const Vec3& attitude_error) {
     estimated_position_ = position;
     estimated_velocity_ = velocity;
+    attitude_error_ = attitude_error;
     flies_on_estimate_ = true;
   }
   /// Moves the positions that are asked for, those in the delay included: an estimate that jumps takes them along.
@@ -154,6 +156,7 @@ class VehicleModel {
   Vec3 wind_ = Vec3::Zero();
   Vec3 estimated_position_ = Vec3::Zero();
   Vec3 estimated_velocity_ = Vec3::Zero();
+  Vec3 attitude_error_ = Vec3::Zero();
   bool flies_on_estimate_ = false;
 };
 

@@ -48,12 +48,18 @@ std::vector<planner::base::Track> measure(const World& world, const config::Sens
   return tracks;
 }
 
-void SensingPipeline::step(double t, const World& world, std::span<const Vec3> vehicles, double clock_start) {
+void SensingPipeline::step(double t, const World& world, std::span<const Vec3> vehicles, double clock_start,
+                           const EstimateError& error) {
   for (;; ++next_) {
     const double due = static_cast<double>(next_) / sensing_.rate;
     if (!(due <= t + kDueTolerance)) return;
     pending_.push_back(
         {next_, due, due + sensing_.delay, measure(world, sensing_, seed_, next_, due - clock_start, vehicles), 0.0});
+    if (sensing_.sensed_from == config::SensedFrom::kWorld) continue;
+    for (planner::base::Track& track : pending_.back().tracks) {
+      track.position += error.position;
+      track.velocity += error.velocity;
+    }
   }
 }
 

@@ -33,6 +33,12 @@ namespace jink::sim::world {
   return measure(world, sensing, seed, sequence, t, std::span(&vehicle, 1));
 }
 
+/// Estimate less truth of the vehicle that senses: what onboard perception adds to every track.
+struct EstimateError {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+};
+
 /// One measurement on its way to the planner.
 struct TrackMessage {
   std::uint64_t sequence = 0;  ///< counts the measurements from 0
@@ -51,8 +57,9 @@ class SensingPipeline {
   /// Takes every measurement that is due at `t` and was not taken yet, with the obstacles where they are when it is due
   /// and the vehicles at `vehicles`, so call it at every step of the simulation. A `t` earlier than before does
   /// nothing. `clock_start` is the time at which the scenario's clock starts; until then the obstacles stand, and it
-  /// may be kInfinity as long as it is not known.
-  void step(double t, const World& world, std::span<const Vec3> vehicles, double clock_start = 0.0);
+  /// may be kInfinity as long as it is not known. `error` is what tracks sensed from the vehicle carry along.
+  void step(double t, const World& world, std::span<const Vec3> vehicles, double clock_start = 0.0,
+            const EstimateError& error = {});
   /// The same for one vehicle.
   void step(double t, const World& world, const Vec3& vehicle, double clock_start = 0.0) {
     step(t, world, std::span(&vehicle, 1), clock_start);

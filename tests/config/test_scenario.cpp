@@ -282,16 +282,29 @@ TEST(LoadScenario, ReadsWindAndEstimate) {
   const Scenario plain = loaded(kValid);
   EXPECT_EQ(plain.wind.mean, Vec3::Zero());
   EXPECT_EQ(plain.wind.gust, 0.0);
+  EXPECT_TRUE(plain.estimate.px4);
   EXPECT_EQ(plain.estimate.drift, 0.0);
   EXPECT_TRUE(plain.faults.empty());
   const Scenario s = loaded(kFaulty);
   EXPECT_EQ(s.wind.mean, Vec3(1, 2, -0.5));
   EXPECT_EQ(s.wind.gust, 0.7);
   EXPECT_EQ(s.wind.gust_time, 3.0);
+  EXPECT_FALSE(s.estimate.px4);
   EXPECT_EQ(s.estimate.position_noise, 0.1);
   EXPECT_EQ(s.estimate.velocity_noise, 0.2);
   EXPECT_EQ(s.estimate.drift, 0.3);
   EXPECT_EQ(s.estimate.drift_time, 40.0);
+}
+
+TEST(LoadScenario, KnowsWhoseEstimateItIsAndWhereItSenses) {
+  EXPECT_TRUE(loaded(kValid + "estimate: px4\n").estimate.px4);
+  EXPECT_EQ(loaded(kValid + "estimate: none\n").estimate, (EstimateErrors{.px4 = false}));
+  expect_refused(kValid + "estimate: none\n", {"estimate: none", "estimate: some", 15, "estimate", "some", "px4"},
+                 load);
+  EXPECT_EQ(loaded(kValid).sensing.sensed_from, SensedFrom::kWorld);
+  EXPECT_EQ(loaded(replaced(kValid, "dropout: 0.4", "sensed_from: vehicle")).sensing.sensed_from, SensedFrom::kVehicle);
+  expect_refused(kTeam, {"dropout: 0.4", "sensed_from: vehicle", 8, "sensing", "", "several"},
+                 load);
 }
 
 TEST(LoadScenario, ReadsEveryFault) {

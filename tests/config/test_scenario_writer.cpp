@@ -76,7 +76,7 @@ TEST(ToYaml, ConditionsAndFurtherVehiclesReadBack) {
   scenario.world = planner::base::Box{{-10, -10, 0}, {awkward(100), 10, 10}};
   scenario.sensing = {7.0, 19.0, 0.1, awkward(1), 0.3, 0.05};
   scenario.wind = {awkward_vector(1), 0.5, 3.0};
-  scenario.estimate = {0.1, 0.2, 0.3, awkward(7)};
+  scenario.estimate = {false, 0.1, 0.2, 0.3, awkward(7)};
   ScenarioVehicle named{{5, 5, 1}, {-5, -5, 1}, "ardrone2", {}};
   ScenarioVehicle own{{-5, 5, 1}, {5, -5, 1}, "inline", {}};
   own.vehicle.max_speed = awkward(60);

@@ -262,7 +262,7 @@ TEST(VehicleFaults, BefallOnlyTheirVehicle) {
 TEST(VehicleFaults, ConditionsAreTheScenariosAndEachVehiclesOwn) {
   config::Scenario scenario;
   scenario.wind = {{1, 2, 3}, 0.5, 4.0};
-  scenario.estimate = {0.1, 0.2, 0.3, 5.0};
+  scenario.estimate = {false, 0.1, 0.2, 0.3, 5.0};
   vehicle::AutopilotOptions first;
   vehicle::AutopilotOptions second;
   set_conditions(scenario, 1, 0, first);

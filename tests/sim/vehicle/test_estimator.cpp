@@ -147,7 +147,7 @@ TEST(Estimator, RejectsErrorsThatAreNone) {
 TEST(EstimatedFlight, HoversAsPx4DoesInItsOwnEyes) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     AutopilotOptions options = airborne_options();
-    options.estimate = measured_estimate_errors();
+    options.estimate = {.ins = true};
     options.seed = seed;
     Flight flight(options);
     const Setpoint here = position_setpoint({0, 0, 3});
@@ -169,8 +169,8 @@ TEST(EstimatedFlight, HoversAsPx4DoesInItsOwnEyes) {
     for (const Statistics& axis : believed) {
       RecordProperty("std_" + std::to_string(seed), std::to_string(axis.deviation()));
       EXPECT_GT(axis.deviation(), 0.04);
-      EXPECT_LT(axis.deviation(), 0.18);
-      EXPECT_NEAR(axis.mean(), axis.mean() > 1.0 ? 3.0 : 0.0, 0.1);
+      EXPECT_LT(axis.deviation(), 0.45);
+      EXPECT_NEAR(axis.mean(), axis.mean() > 1.0 ? 3.0 : 0.0, 0.3);
     }
     EXPECT_GT(furthest, 0.2);
     EXPECT_LT(furthest, 1.2);
@@ -246,7 +246,7 @@ TEST(WindyFlight, TheSameSeedGivesTheSameBitsAndAnotherOthers) {
   const auto fly = [](std::uint64_t seed) {
     AutopilotOptions options = airborne_options();
     options.wind.gust = 1.0;
-    options.estimate = measured_estimate_errors();
+    options.estimate = {.ins = true};
     options.seed = seed;
     Flight flight(options);
     flight.run(5.0);
@@ -259,7 +259,7 @@ TEST(WindyFlight, TheSameSeedGivesTheSameBitsAndAnotherOthers) {
 TEST(WindyFlight, TakesOffAndLandsWithErrorsAndWind) {
   AutopilotOptions options = instant_options();
   options.wind = {.mean = {2, 1, 0}, .gust = 0.7};
-  options.estimate = measured_estimate_errors();
+  options.estimate = {.ins = true};
   Flight flight(options);
   ASSERT_EQ(flight.autopilot.takeoff(), Result::kAccepted);
   ASSERT_EQ(flight.autopilot.arm(), Result::kAccepted);
