@@ -151,7 +151,8 @@ Sensing read_sensing(const Value& value) {
   sensing.position_noise = map.number_or("position_noise", closed(0, 1000), sensing.position_noise);
   sensing.velocity_noise = map.number_or("velocity_noise", closed(0, 1000), sensing.velocity_noise);
   sensing.dropout = map.number_or("dropout", below(0, 1), sensing.dropout);
-  if (const auto from = map.find("sensed_from")) sensing.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
+  if (const auto from = map.find("sensed_from"))
+    sensing.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
   return sensing;
 }
 

@@ -149,6 +149,10 @@ void build_sando_of(config::Scenario& scenario, planner::base::RandomStream& ran
 
 // The place in the list is the random stream: new ones go to the end, so that the worlds of the others stay.
 
+constexpr std::uint64_t kWindStream = 0x77696e64;  // "wind": a name of its own among the streams of a seed
+constexpr double kWindSpeed = 3.0;                 // m/s
+constexpr double kGust = 1.0;                      // m/s, rms of all three axes
+
 constexpr std::array kFamilies = {Family{"crossing", true, build_crossing},
                                   Family{"head_on", true, build_head_on},
                                   Family{"overtaking", true, build_overtaking},
@@ -260,12 +264,13 @@ config::Scenario make_world(std::string_view family, std::uint64_t seed) {
 }
 
 std::string_view to_string(Tier tier) {
+  if (tier == Tier::kField) return "field";
   return tier == Tier::kPerfect ? "perfect" : "realistic";
 }
 
-void set_tier(config::Scenario& scenario, Tier tier) {
+void set_tier(config::Scenario& scenario, Tier tier, std::uint64_t seed) {
   config::Sensing sensing;
-  if (tier == Tier::kRealistic) {
+  if (tier != Tier::kPerfect) {
     sensing.range = 12.0;
     sensing.rate = 20.0;
     sensing.delay = 0.1;
@@ -274,7 +279,16 @@ void set_tier(config::Scenario& scenario, Tier tier) {
     sensing.dropout = 0.05;
   }
   sensing.range = std::min(sensing.range, scenario.sensing.range);
+  const bool field = tier == Tier::kField;
+  // Where several vehicles share the tracks they are an external tracker's.
+  if (field && scenario.vehicles.empty()) sensing.sensed_from = config::SensedFrom::kVehicle;
   scenario.sensing = sensing;
+  scenario.estimate = {.px4 = field};
+  scenario.wind = {};
+  if (!field) return;
+  const double direction = planner::base::RandomStream(seed, kWindStream).uniform() * 2.0 * std::numbers::pi;
+  scenario.wind.mean = {kWindSpeed * std::cos(direction), kWindSpeed * std::sin(direction), 0.0};
+  scenario.wind.gust = kGust / std::sqrt(3.0);
 }
 
 }  // namespace jink::sim::families

@@ -61,13 +61,17 @@ inline constexpr double kStraightOverlap = 0.1;
 /// last bit.
 [[nodiscard]] config::Scenario make_world(std::string_view family, std::uint64_t seed);
 
-/// How well the obstacles are seen. Perfect: true tracks without delay at 20 Hz. Realistic: position noise 0.1 m and
-/// velocity noise 0.3 m/s (standard deviations per axis), delay 0.1 s, range 12 m, 5 % dropout, 20 Hz.
-enum class Tier { kPerfect, kRealistic };
-/// "perfect", "realistic".
+/// How well obstacles are seen and the vehicle knows where it is.
+/// - Field: position noise 0.1 m and velocity noise 0.3 m/s (standard deviations per axis), delay 0.1 s, range 12 m,
+///   5 % dropout, 20 Hz, sensed from the vehicle; PX4's estimate; wind of 3 m/s from anywhere, gusts of 1 m/s rms.
+/// - Perfect: true tracks without delay at 20 Hz, the true estimate, no wind.
+/// - Realistic: the field's tracks with the true estimate and no wind.
+enum class Tier { kField, kPerfect, kRealistic };
+/// "field", "perfect", "realistic".
 [[nodiscard]] std::string_view to_string(Tier tier);
 
-/// Replaces the scenario's sensing by the tier's. A range of the scenario's own that is smaller stays.
-void set_tier(config::Scenario& scenario, Tier tier);
+/// Replaces the scenario's sensing, estimate and wind by the tier's. A range of the scenario's own that is smaller
+/// stays. The direction of the wind follows from `seed`.
+void set_tier(config::Scenario& scenario, Tier tier, std::uint64_t seed = 1);
 
 }  // namespace jink::sim::families

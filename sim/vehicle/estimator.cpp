@@ -13,7 +13,7 @@ constexpr double kWalk = 0.1;           // m/s per square root of a second witho
 constexpr double kRecoveryTime = 1.0;   // s, in which GPS takes the errors of dead reckoning away
 constexpr double kReckonedNone = 1e-4;  // m and m/s: gone
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kAccuracy = 0.29;      // m, as PX4's SITL reports
+constexpr double kAccuracy = 0.29;  // m, as PX4's SITL reports
 constexpr double kHeightAccuracy = 0.03;
 
 // Names of their own among the streams of a seed.

@@ -11,8 +11,8 @@
 
 namespace jink::sim::vehicle {
 
-/// What the estimate gets wrong. The figures are standard deviations per axis, on top of the filter's errors. The noises
-/// are not white, as a filter's output is not: they die down within 1.5 s.
+/// What the estimate gets wrong. The figures are standard deviations per axis, on top of the filter's errors. The
+/// noises are not white, as a filter's output is not: they die down within 1.5 s.
 struct EstimateErrors {
   bool ins = false;             ///< errs as PX4's filter does (InsErrors), in attitude too
   double position_noise = 0.0;  ///< m

@@ -30,14 +30,14 @@ constexpr double kAssumedAccelBias = 3e-3;
 constexpr double kAssumedGyroBias = 1e-3;
 constexpr double kAssumedBaroBias = 0.13;  // m per square root of a second
 
-constexpr Sigma kGnssPosition{0.9, 0.2};          // m, horizontal; the filter takes the receiver's eph
-constexpr Sigma kGnssHeight{1.78, 0.5};           // its epv
-constexpr Sigma kGnssVelocity{0.4, 0.07};         // m/s
+constexpr Sigma kGnssPosition{0.9, 0.2};   // m, horizontal; the filter takes the receiver's eph
+constexpr Sigma kGnssHeight{1.78, 0.5};    // its epv
+constexpr Sigma kGnssVelocity{0.4, 0.07};  // m/s
 constexpr Sigma kGnssVerticalVelocity{0.6, 0.158};
-constexpr Sigma kHeading{0.3, 0.1};               // rad, EKF2_HEAD_NOISE
-constexpr Sigma kBarometer{3.5, 0.085};           // m, EKF2_BARO_NOISE; 1 Pa
-constexpr Sigma kRangefinder{0.1, 0.02};          // m, EKF2_RNG_NOISE
-constexpr Sigma kStandstill{0.01, 0.0};           // m/s
+constexpr Sigma kHeading{0.3, 0.1};       // rad, EKF2_HEAD_NOISE
+constexpr Sigma kBarometer{3.5, 0.085};   // m, EKF2_BARO_NOISE; 1 Pa
+constexpr Sigma kRangefinder{0.1, 0.02};  // m, EKF2_RNG_NOISE
+constexpr Sigma kStandstill{0.01, 0.0};   // m/s
 
 // The rangefinder is used low and slow: EKF2_RNG_A_HMAX and EKF2_RNG_A_VMAX.
 constexpr double kRangefinderHeight = 5.0;

@@ -46,7 +46,15 @@ class InsErrors {
 
  private:
   /// Where each part of the error state begins; the biases are the filter's estimates of what is truly zero.
-  enum Index { kPosition = 0, kVelocity = 3, kAttitude = 6, kGyroBias = 9, kAccelBias = 12, kBaroBias = 15, kSize = 16 };
+  enum Index {
+    kPosition = 0,
+    kVelocity = 3,
+    kAttitude = 6,
+    kGyroBias = 9,
+    kAccelBias = 12,
+    kBaroBias = 15,
+    kSize = 16
+  };
 
   void propagate(const Motion& truth, bool at_rest);
   void propagate_covariance(const Motion& truth);

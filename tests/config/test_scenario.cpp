@@ -303,8 +303,7 @@ TEST(LoadScenario, KnowsWhoseEstimateItIsAndWhereItSenses) {
                  load);
   EXPECT_EQ(loaded(kValid).sensing.sensed_from, SensedFrom::kWorld);
   EXPECT_EQ(loaded(replaced(kValid, "dropout: 0.4", "sensed_from: vehicle")).sensing.sensed_from, SensedFrom::kVehicle);
-  expect_refused(kTeam, {"dropout: 0.4", "sensed_from: vehicle", 8, "sensing", "", "several"},
-                 load);
+  expect_refused(kTeam, {"dropout: 0.4", "sensed_from: vehicle", 8, "sensing", "", "several"}, load);
 }
 
 TEST(LoadScenario, ReadsEveryFault) {

@@ -21,14 +21,14 @@ from flight import check, main
 # A small search takes little time; straight flight is sure to fail in these families.
 QUICK = ["--set", "horizon.generations=4", "--set", "horizon.population=8", "--set", "companion.largest_replan_rate_hz=10"]
 PAIR = ["--families", "darts,gates", "--pilots", "jink,straight"]
-SMALL = [*PAIR, "--runs", 1, *QUICK]
+SMALL = [*PAIR, "--tiers", "field,perfect", "--runs", 1, *QUICK]
 FILES = ["flights.jsonl", "flights.csv", "table.csv", "table.json", "table.md", "arena.html", "planner.yaml"]
 BAD_USAGE = [
     (["--families", "crossing,bogus"], ["--families", "'bogus'", "crossing, head_on"]),
     (["--families", "crossing,crossing"], ["--families", "'crossing' is there twice"]),
     (["--families", ""], ["--families", "''"]),
     (["--pilots", "icarus"], ["--pilots", "'icarus'", "jink"]),
-    (["--tiers", "wild"], ["--tiers", "'wild'", "perfect, realistic"]),
+    (["--tiers", "wild"], ["--tiers", "'wild'", "field, perfect, realistic"]),
     (["--runs", "0"], ["--runs", "0", "1 to 1000000"]),
     (["--shard", "3/2"], ["--shard", "'3/2'", "K/N"]),
     (["--shard", "0/2"], ["--shard", "'0/2'"]),

@@ -151,13 +151,13 @@ TEST_P(WorldFamily, MotionIsAsDeclared) {
 }
 
 // As a failed flight's world is kept, so that it can be flown again.
-TEST_P(WorldFamily, ReadsBackFromYamlInBothTiers) {
+TEST_P(WorldFamily, ReadsBackFromYamlInEachTier) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) /
                                      ("jink_" + std::string(GetParam()) + "_" + std::to_string(getpid()) + ".yaml");
-  for (const Tier tier : {Tier::kPerfect, Tier::kRealistic}) {
+  for (const Tier tier : {Tier::kField, Tier::kPerfect, Tier::kRealistic}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       config::Scenario scenario = make_world(GetParam(), seed);
-      set_tier(scenario, tier);
+      set_tier(scenario, tier, seed);
       std::ofstream(file) << config::to_yaml(scenario);
       testing_support::expect_same(scenario, config::load_scenario(file));
     }
@@ -204,8 +204,31 @@ TEST(Tiers, RealisticIsTheIssuesAndKeepsASmallerRange) {
   EXPECT_EQ(late.sensing, (config::Sensing{7.0, 20.0, 0.1, 0.1, 0.3, 0.05}));
   set_tier(late, Tier::kPerfect);
   EXPECT_EQ(late.sensing, (config::Sensing{7.0, 20.0, 0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(late.estimate, config::EstimateErrors{.px4 = false});
+  EXPECT_EQ(to_string(Tier::kField), "field");
   EXPECT_EQ(to_string(Tier::kPerfect), "perfect");
   EXPECT_EQ(to_string(Tier::kRealistic), "realistic");
+}
+
+TEST(Tiers, FieldHasPx4sEstimateOnboardSensingAndWindFromAnywhere) {
+  config::Scenario scenario = make_world("crossing", 1);
+  set_tier(scenario, Tier::kField, 1);
+  config::Sensing expected{12.0, 20.0, 0.1, 0.1, 0.3, 0.05};
+  expected.sensed_from = config::SensedFrom::kVehicle;
+  EXPECT_EQ(scenario.sensing, expected);
+  EXPECT_TRUE(scenario.estimate.px4);
+  EXPECT_NEAR(scenario.wind.mean.norm(), 3.0, 1e-12);
+  EXPECT_NEAR(scenario.wind.gust * std::sqrt(3.0), 1.0, 1e-12);
+  const Vec3 wind = scenario.wind.mean;
+  set_tier(scenario, Tier::kField, 2);
+  EXPECT_GT((scenario.wind.mean - wind).norm(), 0.1);
+  set_tier(scenario, Tier::kPerfect, 2);
+  EXPECT_EQ(scenario.wind, config::Wind{});
+  EXPECT_EQ(scenario.estimate, config::EstimateErrors{.px4 = false});
+  // Vehicles that share the tracks get an external tracker's.
+  config::Scenario team = make_world("antipodal", 1);
+  set_tier(team, Tier::kField, 1);
+  EXPECT_EQ(team.sensing.sensed_from, config::SensedFrom::kWorld);
 }
 
 }  // namespace

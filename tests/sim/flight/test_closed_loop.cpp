@@ -276,7 +276,7 @@ config::Scenario faulty_crossing() {
   config::Scenario scenario = shipped("crossing");
   scenario.time_limit = 6.0;
   scenario.wind = {{0.5, 0.3, 0}, 0.2, 2.0};
-  scenario.estimate = {0.02, 0.02, 0.05, 10.0};
+  scenario.estimate = {false, 0.02, 0.02, 0.05, 10.0};
   scenario.faults = {fault(FaultKind::kPacketLoss, 0),    fault(FaultKind::kReorder, 1, 2),
                      fault(FaultKind::kDelay, 2, 1),      fault(FaultKind::kTracksGarbage, 1, 1),
                      fault(FaultKind::kTrackNoise, 0, 2), fault(FaultKind::kTracksFlood, 3, 0.5),

@@ -95,7 +95,8 @@ struct Flown {
 };
 
 /// PX4 tells the velocity and the acceleration that its controller asks for in all; what was fed forward is that less
-/// what its gains (MPC_XY_P 0.95, MPC_Z_P 1, MPC_XY_VEL_*_ACC 1.8, 0.4, 0.2, MPC_Z_VEL_*_ACC 4, 2, 0) make of the errors.
+/// what its gains (MPC_XY_P 0.95, MPC_Z_P 1, MPC_XY_VEL_*_ACC 1.8, 0.4, 0.2, MPC_Z_VEL_*_ACC 4, 2, 0) make of the
+/// errors.
 Flown flown(const std::string& name) {
   const Recording recording = read_recording(name);
   const std::vector<Sample>& setpoints = recording.at("setpoint");
@@ -124,10 +125,9 @@ Flown flown(const std::string& name) {
     integral += kPeriod * integral_gain.cwiseProduct(error);
     Setpoint setpoint;
     setpoint.position = part(wanted, 0);
-    setpoint.velocity =
-        part(wanted, 3) - position_gain.cwiseProduct(part(wanted, 0) - part(believed, 0));
-    setpoint.acceleration = part(wanted, 6) - velocity_gain.cwiseProduct(error) - integral +
-                            derivative_gain.cwiseProduct(rate);
+    setpoint.velocity = part(wanted, 3) - position_gain.cwiseProduct(part(wanted, 0) - part(believed, 0));
+    setpoint.acceleration =
+        part(wanted, 6) - velocity_gain.cwiseProduct(error) - integral + derivative_gain.cwiseProduct(rate);
     setpoint.yaw = std::remainder(1.5707963267948966 - at(recording.at("attitude"), t, false)[2], 6.283185307179586);
     flown.setpoints.push_back(setpoint);
     flown.track.add(part(wanted, 0), part(believed, 0), part(was, 0), part(believed, 3) - part(was, 3));
@@ -200,9 +200,9 @@ const std::array<std::string, 8> kNames = {
 
 std::array<Figures, 8> all_figures(const Track& track) {
   std::array<Figures, 8> all{};
-  const std::array<std::vector<Vec3>, 4> errors = {
-      difference(track.estimate, track.setpoint), difference(track.truth, track.setpoint),
-      difference(track.truth, track.estimate), track.velocity_error};
+  const std::array<std::vector<Vec3>, 4> errors = {difference(track.estimate, track.setpoint),
+                                                   difference(track.truth, track.setpoint),
+                                                   difference(track.truth, track.estimate), track.velocity_error};
   for (std::size_t i = 0; i < all.size(); ++i) all.at(i) = figures(errors.at(i / 2), i % 2 == 0);
   return all;
 }
@@ -217,7 +217,7 @@ std::array<Spread, 8> flown_again(const Flown& real) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const auto one = all_figures(fly(real, static_cast<std::uint64_t>(seed)));
     for (std::size_t i = 0; i < all.size(); ++i) {
-      for (double Figures::* figure : {&Figures::rms, &Figures::quantile, &Figures::time}) {
+      for (double Figures::*figure : {&Figures::rms, &Figures::quantile, &Figures::time}) {
         const double value = one.at(i).*figure;
         all.at(i).mean.*figure += value / kSeeds;
         all.at(i).least.*figure = std::min(all.at(i).least.*figure, value);
@@ -254,7 +254,7 @@ TEST_P(Px4Flight, IsOneThatTheSimulatorFliesToo) {
   const auto simulated = flown_again(real);
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     SCOPED_TRACE(kNames.at(i));
-    for (double Figures::* figure : {&Figures::rms, &Figures::quantile, &Figures::time}) {
+    for (double Figures::*figure : {&Figures::rms, &Figures::quantile, &Figures::time}) {
       if (figure == &Figures::time && i % 2 == 1) continue;
       EXPECT_GT(recorded.at(i).*figure, 0.75 * simulated.at(i).least.*figure);
       EXPECT_LT(recorded.at(i).*figure, 1.25 * simulated.at(i).most.*figure);

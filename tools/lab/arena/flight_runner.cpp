@@ -111,7 +111,7 @@ std::string quoted(const std::string& text) {
 
 config::Scenario scenario_of(const World& world, std::string_view tier) {
   config::Scenario scenario = sim::families::make_world(world.family, world.seed);
-  sim::families::set_tier(scenario, tier_of(tier));
+  sim::families::set_tier(scenario, tier_of(tier), world.seed);
   return scenario;
 }
 

@@ -22,7 +22,7 @@ presentation::Table table_of(const std::string& id, const std::string& tier, con
   std::vector<std::vector<std::string>> cells = reading_cells(rows, true);
   presentation::Table table;
   table.id = id;
-  table.title = tier + " tracks";
+  table.title = tier + " tier";
   table.columns = std::move(cells.front());
   table.label_columns = 2;
   for (std::size_t i = 1; i < cells.size(); ++i) {
@@ -38,13 +38,13 @@ presentation::Table table_of(const std::string& id, const std::string& tier, con
 presentation::Section tier_section(const Results& results, const Summary& summary, std::size_t number) {
   const std::string& tier = results.settings.tiers[number - 1];
   const std::vector<const Row*> rows = rows_of_tier(summary, tier);
-  presentation::Section section{tier + " tracks", {}};
+  presentation::Section section{tier + " tier", {}};
   if (rows.empty()) return section;
   const std::string figure_id = fmt::format("figure{:02}", number), table_id = fmt::format("table{:02}", number);
   try {
     jink::tools::figures::Figure drawing = figure(rows, results.settings.pilots);
     drawing.id = figure_id;
-    section.parts.emplace_back(presentation::FigureFile{figure_id, fmt::format("{} tracks: {}", tier, kDrawn),
+    section.parts.emplace_back(presentation::FigureFile{figure_id, fmt::format("{} tier: {}", tier, kDrawn),
                                                         jink::tools::figures::svg_of(drawing)});
   } catch (const jink::tools::figures::FigureError& error) {  // a campaign of hours is worth its tables
     section.parts.emplace_back(fmt::format("There is no figure: {}.", error.what()));

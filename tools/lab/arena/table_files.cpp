@@ -337,7 +337,7 @@ std::string table_markdown(const Results& results, const Summary& summary, const
                            std::size_t most_failures) {
   std::string text = fmt::format("# jink arena\n\n{}.\n\n{}\n", headline(results, summary), kLegend);
   for (const std::string& tier : results.settings.tiers)
-    text += fmt::format("\n## {} tracks\n\n{}", tier, aligned(reading_cells(rows_of_tier(summary, tier), true), true));
+    text += fmt::format("\n## {} tier\n\n{}", tier, aligned(reading_cells(rows_of_tier(summary, tier), true), true));
   if (summary.failures.empty()) return text;
   text += fmt::format("\n## The {} flights that did not reach\n\n", summary.failures.size());
   for (std::size_t i = 0; i < std::min(most_failures, summary.failures.size()); ++i) {
@@ -353,7 +353,7 @@ std::string table_markdown(const Results& results, const Summary& summary, const
 std::string table_text(const Results& results, const Summary& summary) {
   std::string text = headline(results, summary) + "\n";
   for (const std::string& tier : results.settings.tiers)
-    text += fmt::format("\n{} tracks\n{}", tier, aligned(reading_cells(rows_of_tier(summary, tier), false), false));
+    text += fmt::format("\n{} tier\n{}", tier, aligned(reading_cells(rows_of_tier(summary, tier), false), false));
   text.pop_back();
   return text;
 }

@@ -8,7 +8,7 @@
 namespace jink::tools::lab::arena {
 namespace {
 
-constexpr std::array<std::string_view, 2> kTiers{"perfect", "realistic"};
+constexpr std::array<std::string_view, 3> kTiers{"field", "perfect", "realistic"};
 
 }  // namespace
 
@@ -17,8 +17,10 @@ std::span<const std::string_view> tiers() {
 }
 
 sim::families::Tier tier_of(std::string_view name) {
-  if (name == kTiers[0]) return sim::families::Tier::kPerfect;
-  if (name == kTiers[1]) return sim::families::Tier::kRealistic;
+  for (const auto tier :
+       {sim::families::Tier::kField, sim::families::Tier::kPerfect, sim::families::Tier::kRealistic}) {
+    if (name == to_string(tier)) return tier;
+  }
   throw std::invalid_argument("there is no tier '" + std::string(name) + "'");
 }
 

@@ -187,7 +187,7 @@ int run_write(const ArenaOptions& options, const cli::Printer& printer) {
   const auto families = chosen("--write", world.substr(0, colon), sim::families::world_families());
   const auto tiers = chosen("--tiers", options.tiers, arena::tiers());
   if (families.size() != 1) throw cli::UsageError("--write: takes one family");
-  // Of both tiers the true world is the same; what is not asked for is not put in its sensing.
+  // Of all tiers the true world is the same; what is not asked for is not put in its sensing.
   const config::Scenario scenario =
       arena::scenario_of({0, families.front(), 0, *seed}, tiers.size() == 1 ? tiers.front() : "perfect");
   campaign::write_atomically(options.write.back(), config::to_yaml(scenario));
@@ -229,7 +229,7 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
                  "families of worlds, A,B or all: " + names(sim::families::world_families()))
       .show_default();
   app.add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(baselines::pilots())).show_default();
-  app.add_option("--tiers", options->tiers, "how obstacles are sensed, A,B or all: " + names(arena::tiers()))
+  app.add_option("--tiers", options->tiers, "how well obstacles and the vehicle itself are known, A,B or all: " + names(arena::tiers()))
       .show_default();
   app.add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
       .transform(cli::whole_number(1, campaign::kMostRuns))

@@ -185,7 +185,7 @@ TEST(Campaign, GivesUpAFlightUnderWay) {
   EXPECT_EQ(asked, 11);
 }
 
-TEST(Campaign, TiersDifferInSensingAlone) {
+TEST(Campaign, TiersDifferInSensingEstimateAndWindAlone) {
   const World world{0, "gates", 0, 17};
   config::Scenario perfect = scenario_of(world, "perfect");
   const config::Scenario realistic = scenario_of(world, "realistic");
@@ -195,6 +195,11 @@ TEST(Campaign, TiersDifferInSensingAlone) {
   EXPECT_EQ(realistic.sensing.velocity_noise, 0.3);
   EXPECT_EQ(realistic.sensing.delay, 0.1);
   EXPECT_EQ(realistic.sensing.range, 12.0);
+  const config::Scenario field = scenario_of(world, "field");
+  EXPECT_EQ(field.sensing.dropout, 0.05);
+  EXPECT_TRUE(field.estimate.px4);
+  EXPECT_FALSE(perfect.estimate.px4 || realistic.estimate.px4);
+  EXPECT_EQ(field.start, perfect.start);
   EXPECT_EQ(perfect.start, realistic.start);
   EXPECT_EQ(perfect.obstacles.size(), realistic.obstacles.size());
   EXPECT_THROW(static_cast<void>(scenario_of(world, "wild")), std::invalid_argument);

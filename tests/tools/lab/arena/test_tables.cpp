@@ -166,7 +166,7 @@ TEST(Tables, JsonHasWhatTheWallClockSaysApart) {
 TEST(Tables, MarkdownHasATableForEachTierAndTheCommands) {
   const Results results = mixed();
   const std::string text = table_markdown(results, summarise(results), "out", 2);
-  for (const char* part : {"## perfect tracks", "## realistic tracks", "33.3 (6.1 to 79.2)", "| all ", "-0.10 / ",
+  for (const char* part : {"## perfect tier", "## realistic tier", "33.3 (6.1 to 79.2)", "| all ", "-0.10 / ",
                            "The 5 flights that did not reach", "`jink replay out/failed/crossing-", "and 3 more"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
