@@ -3,13 +3,13 @@
 
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "ObstacleTracks.h"
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
-#include "bridge/dds/track_feed.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 
 namespace jink::bridge::dds {
@@ -27,23 +27,78 @@ void to_wire(const Vec3& v, Wire& wire) {
 
 }  // namespace
 
-class DdsTrackReader::Impl : public DdsTrackFeed {
+class DdsTrackReader::Impl {
  public:
-  Impl(DdsParticipant& node, const base::Clock& clock)
-      : DdsTrackFeed(node, clock, {kTracksTopic, kTracksType, cdr::decode_obstacle_tracks, refuse_frame}) {}
+  Impl(DdsParticipant& node, const base::Clock& clock, TrackFormat format)
+      : clock_(clock),
+        topic_(topic_of(format)),
+        reader_(node, topic_.name, topic_.type,
+                [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
+
+  bool poll(tracking::TrackMessage& message) { return inbox_.poll(message); }
+  void notify(base::Notifier& notifier) { inbox_.notify(notifier); }
+  [[nodiscard]] tracking::TrackSourceStatus status() const {
+    tracking::TrackSourceStatus status = inbox_.status();
+    status.writers = reader_.writers();
+    status.malformed = malformed_;
+    if (status.last_refusal.empty()) status.last_refusal = reader_.mismatch();
+    return status;
+  }
+  [[nodiscard]] std::uint64_t overruns() const { return inbox_.overruns(); }
+  [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
  private:
-  static std::string refuse_frame(const std::string& frame_id) {
-    if (frame_id == "map" || frame_id == "ned") return {};
-    return "frame_id '" + cdr::printable(frame_id) + "' is neither 'map' nor 'ned'";
+  /// A topic and what its payloads are.
+  struct Topic {
+    const char* name;
+    const char* type;
+    /// Nothing where a payload is not of the type.
+    std::optional<tracking::DecodedTracks> (*decode)(std::span<const std::uint8_t> payload);
+    /// Why a message in this frame is refused; empty: it is taken.
+    std::string (*refuse_frame)(const std::string& frame_id);
+  };
+
+  static Topic topic_of(TrackFormat format) {
+    if (format == TrackFormat::kAutoware) {
+      return {kAutowareTopic, kAutowareType, cdr::decode_tracked_objects, [](const std::string& frame_id) {
+                if (frame_id == "map") return std::string();
+                return "TrackedObjects: frame_id '" + cdr::printable(frame_id) + "' is not 'map'";
+              }};
+    }
+    return {kTracksTopic, kTracksType, cdr::decode_obstacle_tracks, [](const std::string& frame_id) {
+              if (frame_id == "map" || frame_id == "ned") return std::string();
+              return "frame_id '" + cdr::printable(frame_id) + "' is neither 'map' nor 'ned'";
+            }};
   }
+
+  // On Fast DDS's thread: the payload as a message into the inbox, or refused.
+  void accept(const Payload& payload, std::uint64_t writer) {
+    const double received = clock_.now();
+    std::optional<tracking::DecodedTracks> message = topic_.decode(payload);
+    if (!message) {
+      ++malformed_;
+    } else if (const std::string why = topic_.refuse_frame(message->frame_id); !why.empty()) {
+      inbox_.refuse_frame(why);
+    } else {
+      message->tracks.writer = writer;
+      message->tracks.received = received;
+      message->tracks.stamp_age = system_time() - message->stamp_unix_s;
+      inbox_.put(std::move(message->tracks), message->why);
+    }
+  }
+
+  const base::Clock& clock_;
+  Topic topic_;
+  std::atomic<std::uint64_t> malformed_ = 0;
+  tracking::TrackInbox inbox_;
+  PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
-DdsTrackReader::DdsTrackReader(DdsParticipant& node, const base::Clock& clock)
-    : impl_(std::make_unique<Impl>(node, clock)) {}
+DdsTrackReader::DdsTrackReader(DdsParticipant& node, const base::Clock& clock, TrackFormat format)
+    : impl_(std::make_unique<Impl>(node, clock, format)) {}
 DdsTrackReader::DdsTrackReader(int domain, const base::Clock& clock)
     : own_node_(std::make_unique<DdsParticipant>(domain, "jink track reader")),
-      impl_(std::make_unique<Impl>(*own_node_, clock)) {}
+      impl_(std::make_unique<Impl>(*own_node_, clock, TrackFormat::kJink)) {}
 DdsTrackReader::~DdsTrackReader() = default;
 bool DdsTrackReader::poll(tracking::TrackMessage& message) {
   return impl_->poll(message);

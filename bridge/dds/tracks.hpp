@@ -16,20 +16,26 @@ namespace jink::bridge::dds {
 
 inline constexpr const char* kTracksTopic = "rt/jink/obstacle_tracks";  ///< ROS 2: /jink/obstacle_tracks
 inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks_";
+/// ROS 2: /perception/object_recognition/tracking/objects
+inline constexpr const char* kAutowareTopic = "rt/perception/object_recognition/tracking/objects";
+inline constexpr const char* kAutowareType = "autoware_perception_msgs::msg::dds_::TrackedObjects_";
 
-/// Reads the topic best effort, volatile, keep last, so that a writer of any reliability and durability matches; by
-/// the node's transports. Messages are checked and converted to ENU on Fast DDS's
-/// thread and queued; when nobody polls, the oldest go. All functions are safe from any thread and never block.
+/// Who makes the tracks: a program of jink's topic, in the frame `map` (ENU about the autopilot's local origin) or
+/// `ned`; or Autoware's perception, in `map` alone.
+enum class TrackFormat { kJink, kAutoware };
+
+/// Reads a topic of tracks best effort, volatile, keep last, so that a writer of any reliability and durability
+/// matches; by the node's transports. Messages are checked and converted to ENU on Fast DDS's thread and queued; when
+/// nobody polls, the oldest go. All functions are safe from any thread and never block.
 ///
-/// A message whose frame_id is neither `map` (ENU) nor `ned` is refused whole; a track with non-finite or absurd values
-/// (TrackLimits) is left out of its message; a payload that is no ObstacleTracks message is refused before anything is
-/// allocated for it.
+/// A message in another frame is refused whole; a track with non-finite or absurd values (TrackLimits) is left out of
+/// its message; a payload that is no message of the type is refused before anything is allocated for it.
 class DdsTrackReader final : public tracking::TrackSource {
  public:
   /// Returns at once; discovery goes on in the background. `node` and `clock` must outlive the reader.
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
-  DdsTrackReader(DdsParticipant& node, const base::Clock& clock);
-  /// On a node of its own. @throws as DdsParticipant's.
+  DdsTrackReader(DdsParticipant& node, const base::Clock& clock, TrackFormat format = TrackFormat::kJink);
+  /// Of jink's topic, on a node of its own. @throws as DdsParticipant's.
   DdsTrackReader(int domain, const base::Clock& clock);
   ~DdsTrackReader() override;
   DdsTrackReader(const DdsTrackReader&) = delete;

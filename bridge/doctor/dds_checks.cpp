@@ -16,7 +16,6 @@
 
 #include "bridge/cdr/px4_messages.hpp"
 #include "bridge/cdr/track_messages.hpp"
-#include "bridge/dds/autoware.hpp"
 #include "bridge/dds/discovery.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/px4_link.hpp"

@@ -9,7 +9,6 @@
 
 #include "bridge/base/clock.hpp"
 #include "bridge/companion/companion.hpp"
-#include "bridge/dds/autoware.hpp"
 #include "bridge/dds/intents.hpp"
 #include "bridge/dds/px4_link.hpp"
 #include "bridge/dds/tracks.hpp"
@@ -102,7 +101,7 @@ struct Transports {
       : node(mission.dds_domain), vehicle(&mavlink) {
     const config::TrackSources& sources = mission.tracks.sources;
     if (sources.jink) tracks.add(jink.emplace(node, clock));
-    if (sources.autoware) tracks.add(autoware.emplace(node, clock));
+    if (sources.autoware) tracks.add(autoware.emplace(node, clock, bridge::dds::TrackFormat::kAutoware));
     if (sources.adsb) {
       const auto reports = [&mavlink](bridge::mavlink::AdsbReport& report) { return mavlink.next_adsb(report); };
       const auto origin = [&mavlink] { return mavlink.state().origin; };
@@ -126,8 +125,7 @@ struct Transports {
   }
 
   bridge::dds::DdsParticipant node;
-  std::optional<bridge::dds::DdsTrackReader> jink;
-  std::optional<bridge::dds::DdsAutowareReader> autoware;
+  std::optional<bridge::dds::DdsTrackReader> jink, autoware;
   std::optional<bridge::mavlink::AdsbTracks> adsb;
   bridge::tracking::TrackSources tracks;
   bridge::vehicle::VehicleLink* vehicle;

@@ -7,12 +7,15 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "bridge/base/clock.hpp"
 
 namespace jink::bridge::testing {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Tests run side by side, each in a process: a domain for each call, nobody else's until the process ends.
 inline int own_domain() {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Autoware's tracked objects: each field's meaning, payloads that are none, and both vendors' writers.
-#include "bridge/dds/autoware.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,29 +13,26 @@
 #include "TrackedObjects.h"
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
+#include "bridge/dds/tracks.hpp"
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
+namespace jink::bridge::dds {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::base::SteadyClock;
-using jink::bridge::cdr::decode_tracked_objects;
-using jink::bridge::dds::DdsAutowareReader;
-using jink::bridge::dds::DdsParticipant;
-using jink::bridge::dds::Payload;
-using jink::bridge::dds::PayloadWriter;
-using jink::bridge::testing::ChildProcess;
-using jink::bridge::testing::eventually;
-using jink::bridge::testing::own_domain;
-using jink::bridge::testing::python;
-using jink::bridge::testing::script;
-using jink::bridge::tracking::TrackMessage;
-using jink::planner::base::Track;
+using base::SteadyClock;
+using cdr::decode_tracked_objects;
+using planner::base::Track;
+using testing::ChildProcess;
+using testing::eventually;
+using testing::kNaN;
+using testing::own_domain;
+using testing::python;
+using testing::script;
+using tracking::TrackMessage;
 using Object = autoware_perception_msgs::msg::dds_::TrackedObject_;
 using Objects = autoware_perception_msgs::msg::dds_::TrackedObjects_;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 enum Shape : std::uint8_t { kBox = 0, kCylinder = 1, kPolygon = 2 };
 
 // At (1, 2, 3), heading north (its x axis along the map's y), 2 m/s ahead and 1 m/s to its left, accelerating ahead.
@@ -69,7 +64,7 @@ Payload payload_of(const std::vector<Object>& objects, const std::string& frame 
   message.header().stamp().nanosec(500'000'000);
   message.objects(objects);
   Payload payload;
-  jink::bridge::dds::encode(message, payload);
+  encode(message, payload);
   return payload;
 }
 
@@ -199,8 +194,8 @@ TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
   const int domain = own_domain();
   DdsParticipant node(domain);
   DdsParticipant peer(domain);
-  DdsAutowareReader reader(node, clock);
-  PayloadWriter writer(peer, jink::bridge::dds::kAutowareTopic, jink::bridge::dds::kAutowareType, {.reliable = true});
+  DdsTrackReader reader(node, clock, TrackFormat::kAutoware);
+  PayloadWriter writer(peer, kAutowareTopic, kAutowareType, {.reliable = true});
   ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
   const double before = clock.now();
   ASSERT_TRUE(writer.write(payload_of({object()})));
@@ -208,7 +203,7 @@ TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
   ASSERT_TRUE(eventually([&] { return reader.poll(message); }));
   EXPECT_EQ(message.tracks.size(), 1U);
   EXPECT_GE(message.received, before);
-  EXPECT_NEAR(message.stamp_age, jink::bridge::dds::system_time() - 100.5, 60.0);
+  EXPECT_NEAR(message.stamp_age, system_time() - 100.5, 60.0);
   ASSERT_TRUE(writer.write(payload_of({object()}, "base_link")));
   ASSERT_TRUE(eventually([&] { return reader.status().bad_frames == 1; }));
   EXPECT_EQ(reader.status().last_refusal, "TrackedObjects: frame_id 'base_link' is not 'map'");
@@ -224,7 +219,7 @@ TEST(DdsAutowareReader, TakesAnotherVendorsWriter) {
   const SteadyClock clock;
   const int domain = own_domain();
   DdsParticipant node(domain);
-  DdsAutowareReader reader(node, clock);
+  DdsTrackReader reader(node, clock, TrackFormat::kAutoware);
   ChildProcess peer({python(), script("cyclone_autoware.py"), "--domain", std::to_string(domain)});
   TrackMessage message;
   ASSERT_TRUE(eventually([&] { return reader.poll(message); }, std::chrono::seconds(60)));
@@ -242,3 +237,4 @@ TEST(DdsAutowareReader, TakesAnotherVendorsWriter) {
 }
 
 }  // namespace
+}  // namespace jink::bridge::dds

@@ -3,7 +3,6 @@
 #include "bridge/dds/intents.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <functional>
 #include <limits>
@@ -12,18 +11,15 @@
 #include "Intents.h"
 #include "bridge/cdr/intent_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
+#include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
 namespace jink::bridge::dds {
 namespace {
 
 using testing::eventually;
+using testing::own_domain;
 using Wire = jink_msgs::msg::dds_::Intent_;
-
-int own_domain() {
-  static int tests = 0;
-  return 1 + (static_cast<int>(getpid()) + 11 * tests++) % 100;
-}
 
 team::Intent intent() {
   team::Intent said;

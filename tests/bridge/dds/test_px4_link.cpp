@@ -19,32 +19,25 @@
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
+namespace jink::bridge::dds {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::base::SteadyClock;
-using jink::bridge::cdr::px4::decode_local_position;
-using jink::bridge::cdr::px4::LocalPosition;
-using jink::bridge::cdr::px4::LocalPositionFilter;
-using jink::bridge::dds::DdsParticipant;
-using jink::bridge::dds::DdsVehicleLink;
-using jink::bridge::dds::DdsVehicleOptions;
-using jink::bridge::dds::Payload;
-using jink::bridge::dds::PayloadReader;
-using jink::bridge::dds::PayloadWriter;
-using jink::bridge::dds::px4_topic;
-using jink::bridge::testing::ChildProcess;
-using jink::bridge::testing::eventually;
-using jink::bridge::testing::ManualClock;
-using jink::bridge::testing::own_domain;
-using jink::bridge::testing::python;
-using jink::bridge::testing::script;
-using jink::bridge::vehicle::CommandReport;
-using jink::bridge::vehicle::Setpoint;
-using jink::bridge::vehicle::VehicleState;
+using base::SteadyClock;
+using cdr::px4::decode_local_position;
+using cdr::px4::LocalPosition;
+using cdr::px4::LocalPositionFilter;
+using testing::ChildProcess;
+using testing::eventually;
+using testing::kNaN;
+using testing::ManualClock;
+using testing::own_domain;
+using testing::python;
+using testing::script;
+using vehicle::CommandReport;
+using vehicle::Setpoint;
+using vehicle::VehicleState;
 using WirePosition = px4_msgs::msg::dds_::VehicleLocalPosition_;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
 
 // All valid, 5 m north, 2 m east, 10 m up; moving north, east and down; heading east.
@@ -109,7 +102,7 @@ Payload old_payload(bool version_0) {
 
 Payload new_payload(const WirePosition& wire = wire_position()) {
   Payload payload;
-  jink::bridge::dds::encode(wire, payload);
+  encode(wire, payload);
   return payload;
 }
 
@@ -125,7 +118,7 @@ void expect_is_the_position(const std::optional<LocalPosition>& m) {
   EXPECT_NEAR(m->heading, std::numbers::pi / 2, 1e-6);
   EXPECT_TRUE(m->heading_good);
   EXPECT_TRUE(m->global);
-  EXPECT_EQ(m->origin, (jink::bridge::frames::Geodetic{47.397743, 8.545594, 489.5}));
+  EXPECT_EQ(m->origin, (frames::Geodetic{47.397743, 8.545594, 489.5}));
   EXPECT_TRUE(m->dead_reckoning);
 }
 
@@ -285,26 +278,26 @@ TEST(Px4Topic, HasTheAgentsNamespace) {
   EXPECT_EQ(px4_topic("/", "in/x"), "rt/fmu/in/x");
 }
 
-class UnderlyingLink final : public jink::bridge::vehicle::VehicleLink {
+class UnderlyingLink final : public vehicle::VehicleLink {
  public:
   VehicleState state() override { return underlying; }
   bool send(const Setpoint& setpoint) override {
     sent.push_back(setpoint);
     return true;
   }
-  void request(jink::bridge::vehicle::Command command) override { requested.push_back(command); }
+  void request(vehicle::Command command) override { requested.push_back(command); }
   std::optional<CommandReport> next_report() override { return CommandReport{.detail = "from below"}; }
 
   VehicleState underlying;
   std::vector<Setpoint> sent;
-  std::vector<jink::bridge::vehicle::Command> requested;
+  std::vector<vehicle::Command> requested;
 };
 
 class Px4Dds : public ::testing::Test {
  protected:
   DdsVehicleLink link(const DdsVehicleOptions& options) { return {under_, node_, clock_, options}; }
-  PayloadWriter position_writer(const std::string& topic, const jink::bridge::dds::WriterQos& qos) {
-    return {peer_, topic, jink::bridge::dds::kLocalPositionType, qos};
+  PayloadWriter position_writer(const std::string& topic, const WriterQos& qos) {
+    return {peer_, topic, kLocalPositionType, qos};
   }
 
   const int domain_ = own_domain();
@@ -345,7 +338,7 @@ TEST_F(Px4Dds, TakesPositionsFromPx4sWritersAndTheRestFromTheLinkUnderneath) {
   EXPECT_TRUE(dds.send(setpoint));
   ASSERT_EQ(under_.sent.size(), 1U);
   EXPECT_EQ(under_.sent[0].position, setpoint.position);
-  dds.request(jink::bridge::vehicle::Command::kArm);
+  dds.request(vehicle::Command::kArm);
   EXPECT_EQ(under_.requested.size(), 1U);
   EXPECT_EQ(dds.next_report()->detail, "from below");
 }
@@ -404,15 +397,12 @@ TEST_F(Px4Dds, SendsSetpointsAsPx4TakesThem) {
   px4_msgs::msg::dds_::OffboardControlMode_ mode;
   const auto into = [&taken](auto& message) {
     return [&](const Payload& payload, std::uint64_t) {
-      const bool whole =
-          jink::bridge::cdr::decode(payload, [&](auto& in) { return message.deserialize(in.cdr()), true; });
+      const bool whole = cdr::decode(payload, [&](auto& in) { return message.deserialize(in.cdr()), true; });
       if (whole) ++taken;
     };
   };
-  PayloadReader setpoints(peer_, "rt/px4_2/fmu/in/trajectory_setpoint", jink::bridge::dds::kTrajectorySetpointType,
-                          into(wire));
-  PayloadReader modes(peer_, "rt/px4_2/fmu/in/offboard_control_mode", jink::bridge::dds::kOffboardControlModeType,
-                      into(mode));
+  PayloadReader setpoints(peer_, "rt/px4_2/fmu/in/trajectory_setpoint", kTrajectorySetpointType, into(wire));
+  PayloadReader modes(peer_, "rt/px4_2/fmu/in/offboard_control_mode", kOffboardControlModeType, into(mode));
   ASSERT_TRUE(eventually([&] { return dds.counts().setpoint_readers == 1; }));
   Setpoint absurd = setpoint;
   absurd.velocity.x() = kNaN;
@@ -435,7 +425,7 @@ TEST_F(Px4Dds, SendsSetpointsAsPx4TakesThem) {
   EXPECT_TRUE(std::isnan(wire.jerk()[0]) && std::isnan(wire.yawspeed()));
   EXPECT_FLOAT_EQ(wire.yaw(), static_cast<float>(std::numbers::pi / 2));
   EXPECT_EQ(wire.timestamp(), mode.timestamp());
-  EXPECT_NEAR(static_cast<double>(wire.timestamp()) * 1e-6, jink::bridge::dds::system_time(), 60.0);
+  EXPECT_NEAR(static_cast<double>(wire.timestamp()) * 1e-6, system_time(), 60.0);
   EXPECT_EQ(dds.counts().setpoints_sent, 1U);
   EXPECT_TRUE(under_.sent.empty());
 }
@@ -474,3 +464,4 @@ TEST_P(Px4DdsOtherVendor, ExchangesStateAndSetpoints) {
 INSTANTIATE_TEST_SUITE_P(CycloneDds, Px4DdsOtherVendor, ::testing::Values(0, 1));
 
 }  // namespace
+}  // namespace jink::bridge::dds

@@ -18,21 +18,18 @@
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
+namespace jink::bridge::dds {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::base::SteadyClock;
-using jink::bridge::dds::DdsTrackReader;
-using jink::bridge::dds::DdsTrackWriter;
-using jink::bridge::testing::ChildProcess;
-using jink::bridge::testing::eventually;
-using jink::bridge::testing::own_domain;
-using jink::bridge::tracking::TrackLimits;
-using jink::bridge::tracking::TrackMessage;
-using jink::bridge::tracking::TrackValidator;
-using jink::planner::base::Track;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using base::SteadyClock;
+using planner::base::Track;
+using testing::ChildProcess;
+using testing::eventually;
+using testing::kNaN;
+using testing::own_domain;
+using tracking::TrackLimits;
+using tracking::TrackMessage;
+using tracking::TrackValidator;
 
 double unix_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -253,10 +250,9 @@ TEST(DdsTrackReader, SurvivesMalformedPayloads) {
   const SteadyClock clock;
   const int domain = own_domain();
   DdsTrackReader reader(domain, clock);
-  jink::bridge::dds::DdsParticipant peer(domain);
+  DdsParticipant peer(domain);
   // A reliable writer matches the best-effort reader too.
-  jink::bridge::dds::PayloadWriter writer(peer, jink::bridge::dds::kTracksTopic, jink::bridge::dds::kTracksType,
-                                          {.reliable = true});
+  PayloadWriter writer(peer, kTracksTopic, kTracksType, {.reliable = true});
   ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
 
   std::vector<std::vector<unsigned char>> bad{
@@ -332,3 +328,4 @@ INSTANTIATE_TEST_SUITE_P(CycloneDds, OtherVendor, ::testing::Values(false, true)
                          [](const auto& parameter) { return parameter.param ? "Reliable" : "BestEffort"; });
 
 }  // namespace
+}  // namespace jink::bridge::dds

@@ -21,21 +21,20 @@
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
+namespace jink::bridge::doctor {
 namespace {
 
-using jink::bridge::dds::DdsEndpoint;
-using jink::bridge::dds::DdsParticipant;
-using jink::bridge::dds::DdsTrackWriter;
-using jink::bridge::dds::Payload;
-using jink::bridge::dds::PayloadWriter;
-using jink::bridge::doctor::Check;
-using jink::bridge::doctor::inspect_dds;
-using jink::bridge::testing::ChildProcess;
-using jink::bridge::testing::own_domain;
-using jink::bridge::testing::python;
-using jink::bridge::testing::script;
-using jink::config::Mission;
-using jink::config::Transport;
+using config::Mission;
+using config::Transport;
+using dds::DdsEndpoint;
+using dds::DdsParticipant;
+using dds::DdsTrackWriter;
+using dds::Payload;
+using dds::PayloadWriter;
+using testing::ChildProcess;
+using testing::own_domain;
+using testing::python;
+using testing::script;
 
 constexpr double kWindow_s = 2.0;  // long enough for discovery on this machine
 
@@ -71,8 +70,8 @@ bool has(const std::string& text, const std::string& part) {
 TEST(DdsInspect, IsPleasedWithAWriterWhoseDataArrive) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  const auto checks = inspect(mission, [&] { (void)writer.publish({}, jink::bridge::dds::system_time() - 0.25); });
-  const Check check = find(checks, jink::bridge::dds::kTracksTopic);
+  const auto checks = inspect(mission, [&] { (void)writer.publish({}, dds::system_time() - 0.25); });
+  const Check check = find(checks, dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kOk) << check.finding;
   EXPECT_TRUE(has(check.finding, "1 writer,") && has(check.finding, " Hz, stamps 0.2")) << check.finding;
   EXPECT_EQ(check.remedy, "");
@@ -96,7 +95,7 @@ TEST(DdsInspect, MissesWhoIsNeeded) {
 
 TEST(DdsInspect, NamesTheProgramThatHoldsTheDiscoveryPort) {
   const Mission mission = tracks_mission(own_domain());
-  EXPECT_EQ(jink::bridge::dds::discovery_trouble(mission.dds_domain), "");
+  EXPECT_EQ(dds::discovery_trouble(mission.dds_domain), "");
   const int thief = socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in where{};
   where.sin_family = AF_INET;
@@ -109,14 +108,14 @@ TEST(DdsInspect, NamesTheProgramThatHoldsTheDiscoveryPort) {
     EXPECT_TRUE(has(check.remedy, "0 to 101")) << check.remedy;
   }
   close(thief);
-  EXPECT_EQ(jink::bridge::dds::discovery_trouble(mission.dds_domain), "");
+  EXPECT_EQ(dds::discovery_trouble(mission.dds_domain), "");
 }
 
 TEST(DdsInspect, NamesTheOffsetOfAClock) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  const auto checks = inspect(mission, [&] { (void)writer.publish({}, jink::bridge::dds::system_time() + 3600.0); });
-  const Check check = find(checks, jink::bridge::dds::kTracksTopic);
+  const auto checks = inspect(mission, [&] { (void)writer.publish({}, dds::system_time() + 3600.0); });
+  const Check check = find(checks, dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kWarning);
   EXPECT_TRUE(has(check.finding, "stamps -3")) << check.finding;
   EXPECT_TRUE(has(check.remedy, "clock"));
@@ -125,14 +124,13 @@ TEST(DdsInspect, NamesTheOffsetOfAClock) {
 TEST(DdsInspect, NamesFramesAndPayloadsThatCannotBeUsed) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  Check check =
-      find(inspect(mission, [&] { (void)writer.publish({}, 1.0, "base_link"); }), jink::bridge::dds::kTracksTopic);
+  Check check = find(inspect(mission, [&] { (void)writer.publish({}, 1.0, "base_link"); }), dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_TRUE(has(check.finding, "base_link")) << check.finding;
   const Mission other = tracks_mission(own_domain());
   DdsParticipant peer(other.dds_domain);
-  PayloadWriter broken(peer, jink::bridge::dds::kTracksTopic, jink::bridge::dds::kTracksType);
-  check = find(inspect(other, [&] { (void)broken.write(Payload{0, 1, 0, 0, 7}); }), jink::bridge::dds::kTracksTopic);
+  PayloadWriter broken(peer, dds::kTracksTopic, dds::kTracksType);
+  check = find(inspect(other, [&] { (void)broken.write(Payload{0, 1, 0, 0, 7}); }), dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_TRUE(has(check.finding, "layout")) << check.finding;
 }
@@ -140,7 +138,7 @@ TEST(DdsInspect, NamesFramesAndPayloadsThatCannotBeUsed) {
 TEST(DdsInspect, SeesAMatchWithoutData) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter silent(mission.dds_domain);
-  const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
+  const Check check = find(inspect(mission), dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_EQ(check.finding, "1 writer matched, but no data");
   EXPECT_TRUE(has(check.remedy, "UDP") && has(check.remedy, "--ipc=host"));
@@ -152,17 +150,15 @@ std::string near_match(const std::string& topic, const std::string& type) {
 
 TEST(DdsInspect, NamesNearMatches) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"jink/obstacle_tracks", jink::bridge::dds::kTracksType},  // no rt/
-      {"/jink/obstacle_tracks", "other::Type_"},
-      {"rt/obstacles", jink::bridge::dds::kTracksType},  // the type elsewhere
-      {"rt/jink/obstacle_trakcs", "other::Type_"},
-      {"rt/drone1/jink/obstacle_tracks", "other::Type_"},
+      {"jink/obstacle_tracks", dds::kTracksType},                                       // no rt/
+      {"/jink/obstacle_tracks", "other::Type_"},   {"rt/obstacles", dds::kTracksType},  // the type elsewhere
+      {"rt/jink/obstacle_trakcs", "other::Type_"}, {"rt/drone1/jink/obstacle_tracks", "other::Type_"},
   };
   for (const auto& [topic, type] : cases) {
     const Mission mission = tracks_mission(own_domain());
     DdsParticipant peer(mission.dds_domain, "perception");
     PayloadWriter writer(peer, topic, type);
-    const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
+    const Check check = find(inspect(mission), dds::kTracksTopic);
     EXPECT_EQ(check.level, Check::Level::kMissing) << topic;
     EXPECT_EQ(check.finding, near_match(topic, type));
     EXPECT_TRUE(has(check.remedy, "ROS 2: /jink/obstacle_tracks")) << check.remedy;
@@ -174,18 +170,18 @@ TEST(DdsInspect, DoesNotTakeStrangersForNearMatches) {
   const Mission mission = tracks_mission(own_domain());
   DdsParticipant peer(mission.dds_domain);
   PayloadWriter writer(peer, "rt/rosout", "rcl_interfaces::msg::dds_::Log_");
-  const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
+  const Check check = find(inspect(mission), dds::kTracksTopic);
   EXPECT_EQ(check.finding, "no writer");
 }
 
 TEST(DdsInspect, NamesAnotherTypeOnTheTopic) {
   const Mission mission = tracks_mission(own_domain());
   DdsParticipant peer(mission.dds_domain, "perception");
-  PayloadWriter writer(peer, jink::bridge::dds::kTracksTopic, "jink_msgs::msg::ObstacleTracks");
-  const Check check = find(inspect(mission), jink::bridge::dds::kTracksTopic);
+  PayloadWriter writer(peer, dds::kTracksTopic, "jink_msgs::msg::ObstacleTracks");
+  const Check check = find(inspect(mission), dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_EQ(check.finding, "a writer (perception) with type jink_msgs::msg::ObstacleTracks");
-  EXPECT_TRUE(has(check.remedy, jink::bridge::dds::kTracksType));
+  EXPECT_TRUE(has(check.remedy, dds::kTracksType));
 }
 
 TEST(DdsInspect, NamesThePolicyThatDoesNotMatch) {
@@ -195,7 +191,7 @@ TEST(DdsInspect, NamesThePolicyThatDoesNotMatch) {
   ChildProcess peer({python(), script("cyclone_mismatch.py"), "--domain", std::to_string(mission.dds_domain)});
   ASSERT_TRUE(peer.wait_line([](const std::string& line) { return line == "ready"; }, 0, std::chrono::seconds(60)));
   const auto checks = inspect(mission);
-  const Check tracks = find(checks, jink::bridge::dds::kTracksTopic);
+  const Check tracks = find(checks, dds::kTracksTopic);
   EXPECT_EQ(tracks.level, Check::Level::kFault);
   EXPECT_TRUE(has(tracks.finding, "OWNERSHIP, PARTITION")) << tracks.finding;
   const Check setpoint = find(checks, "rt/px4_1/fmu/in/trajectory_setpoint");
@@ -230,13 +226,13 @@ TEST(DdsInspect, SeesPx4sAgentInEitherVersion) {
 TEST(QosMismatches, AreThoseOfReadersThatAskForMoreThanIsOffered) {
   DdsEndpoint theirs;
   theirs.writes = theirs.reliable = theirs.beyond_volatile = theirs.deadline = true;
-  EXPECT_TRUE(jink::bridge::dds::qos_mismatches(theirs).empty());
+  EXPECT_TRUE(dds::qos_mismatches(theirs).empty());
   theirs.writes = false;
-  EXPECT_EQ(jink::bridge::dds::qos_mismatches(theirs),
-            (std::vector<std::string>{"RELIABILITY", "DURABILITY", "DEADLINE"}));
+  EXPECT_EQ(dds::qos_mismatches(theirs), (std::vector<std::string>{"RELIABILITY", "DURABILITY", "DEADLINE"}));
   theirs = DdsEndpoint{};
   theirs.partitions = {"a", ""};
-  EXPECT_TRUE(jink::bridge::dds::qos_mismatches(theirs).empty());
+  EXPECT_TRUE(dds::qos_mismatches(theirs).empty());
 }
 
 }  // namespace
+}  // namespace jink::bridge::doctor

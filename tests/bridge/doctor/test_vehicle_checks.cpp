@@ -11,18 +11,14 @@
 
 #include "bridge/doctor/parameter_checks.hpp"
 
+namespace jink::bridge::doctor {
 namespace {
 
-using jink::bridge::doctor::Check;
-using jink::bridge::doctor::inspect_link;
-using jink::bridge::doctor::inspect_mission;
-using jink::bridge::doctor::inspect_parameters;
-using jink::bridge::doctor::LinkFindings;
-using jink::bridge::vehicle::BatteryState;
-using jink::bridge::vehicle::FlightMode;
-using jink::config::Mission;
+using config::Mission;
+using vehicle::BatteryState;
+using vehicle::FlightMode;
 using Level = Check::Level;
-namespace px4 = jink::bridge::vehicle::px4;
+namespace px4 = vehicle::px4;
 
 Mission mission() {
   Mission m;
@@ -41,8 +37,8 @@ LinkFindings healthy() {
   h.state.battery = BatteryState::kOk;
   h.state.origin = {47.4, 8.5, 488.0};
   h.state.system_id = 1;
-  h.info.autopilot = jink::bridge::vehicle::px4::kAutopilotPx4;
-  h.info.version = jink::bridge::vehicle::px4::version(0x01110040);
+  h.info.autopilot = vehicle::px4::kAutopilotPx4;
+  h.info.version = vehicle::px4::version(0x01110040);
   h.info.estimator = 895;
   h.info.round_trip_s = 0.001;
   h.rates = {{"HEARTBEAT", 1.0, 1.0, 1.01, 5},
@@ -85,7 +81,7 @@ TEST(Doctor, WithoutAnAutopilotThatIsAllItSays) {
   EXPECT_EQ(checks[0].level, Level::kMissing);
   EXPECT_NE(checks[0].finding.find("udpin://127.0.0.1:14540"), std::string::npos);
   EXPECT_TRUE(inspect_mission(mission(), LinkFindings{}).empty());
-  EXPECT_EQ(jink::bridge::doctor::worst(checks), Level::kMissing);
+  EXPECT_EQ(worst(checks), Level::kMissing);
 }
 
 struct Case {
@@ -105,7 +101,7 @@ TEST(Doctor, NamesTheOneThingThatIsWrongWithTheVehicle) {
       {"autopilot time", Level::kFault, "2 times", [](LinkFindings& h) { h.state.reboots = 2; }},
       {"version", Level::kWarning, "not told", [](LinkFindings& h) { h.info.version.reset(); }},
       {"version", Level::kWarning, "PX4 1.12.3",
-       [](LinkFindings& h) { h.info.version = jink::bridge::vehicle::px4::version(0x010C03FF); }},
+       [](LinkFindings& h) { h.info.version = vehicle::px4::version(0x010C03FF); }},
       {"HEARTBEAT", Level::kWarning, "gap 4.00 s", [](LinkFindings& h) { h.rates[0].largest_gap_s = 4.0; }},
       {"LOCAL_POSITION_NED", Level::kFault, "none", [](LinkFindings& h) { h.rates[1].count = 0; }},
       {"LOCAL_POSITION_NED", Level::kWarning, "30.0 Hz", [](LinkFindings& h) { h.rates[1].measured_hz = 30.0; }},
@@ -160,11 +156,11 @@ TEST(Doctor, RepeatsWhatTheAutopilotSays) {
 
 TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
   Mission m = mission();
-  m.state = jink::config::Transport::kDds;
+  m.state = config::Transport::kDds;
   LinkFindings h = healthy();
   for (std::size_t i = 1; i < h.rates.size(); ++i) h.rates[i].count = 0;
   EXPECT_EQ(bad_ones(inspect_link(m, h)), "");
-  h.state.motion.stamp = jink::bridge::base::kNever;
+  h.state.motion.stamp = base::kNever;
   EXPECT_EQ(find(inspect_mission(m, h), "local position").level, Level::kWarning);
 }
 
@@ -194,8 +190,7 @@ TEST(Doctor, KnowsWhatTheParametersDo) {
 
 TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
   const std::vector<Case> of_vehicle{
-      {"local position", Level::kFault, "never heard",
-       [](LinkFindings& h) { h.state.motion.stamp = jink::bridge::base::kNever; }},
+      {"local position", Level::kFault, "never heard", [](LinkFindings& h) { h.state.motion.stamp = base::kNever; }},
       {"local position", Level::kFault, "not valid", [](LinkFindings& h) { h.state.local_position_ok = false; }},
       {"local position", Level::kWarning, "5.0 m above",
        [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},
@@ -237,3 +232,4 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
 }
 
 }  // namespace
+}  // namespace jink::bridge::doctor

@@ -8,14 +8,9 @@
 #include <numbers>
 #include <random>
 
+namespace jink::bridge::frames {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::frames::enu_from_ned;
-using jink::bridge::frames::heading_from_yaw_enu;
-using jink::bridge::frames::ned_from_enu;
-using jink::bridge::frames::wrap_angle;
-using jink::bridge::frames::yaw_enu_from_heading;
 using std::numbers::pi;
 
 TEST(Frames, NedAxesGoToTheirEnuAxes) {
@@ -84,3 +79,4 @@ TEST(Frames, ThereAndBackIsTheSame) {
 }
 
 }  // namespace
+}  // namespace jink::bridge::frames

@@ -11,15 +11,13 @@
 #include "bridge/tracking/track_inbox.hpp"
 #include "tests/support/bridge_fakes.hpp"
 
+namespace jink::bridge::mavlink {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::frames::Geodetic;
-using jink::bridge::frames::LocalFrame;
-using jink::bridge::mavlink::AdsbReport;
-using jink::bridge::mavlink::AdsbTracks;
-using jink::bridge::testing::FakeClock;
-using jink::bridge::tracking::TrackMessage;
+using frames::Geodetic;
+using frames::LocalFrame;
+using testing::FakeClock;
+using tracking::TrackMessage;
 
 constexpr std::uint32_t kAllValid = 1 | 2 | 4 | 8 | 128;
 
@@ -143,7 +141,7 @@ TEST_F(AdsbTracksTest, AnAircraftOfUnknownVelocityStaysAUsableTrackAsLongAsItIsI
     TrackMessage later;
     ASSERT_TRUE(tracks_.poll(later)) << seconds;
     ASSERT_EQ(later.tracks.size(), 1U) << seconds;
-    EXPECT_EQ(jink::bridge::tracking::refusal(later.tracks[0]), nullptr) << seconds;
+    EXPECT_EQ(tracking::refusal(later.tracks[0]), nullptr) << seconds;
     EXPECT_GT(later.tracks[0].position_sigma, track.position_sigma - 1e-9);
     track = later.tracks[0];
   }
@@ -183,11 +181,12 @@ TEST_F(AdsbTracksTest, AnAircraftStaysInViewForAWhileAndThenGoes) {
 
 TEST(EmitterModel, TheUnknownIsTheLargest) {
   for (std::uint32_t type = 0; type < 300; ++type) {
-    const auto model = jink::bridge::mavlink::emitter_model(type);
+    const auto model = emitter_model(type);
     EXPECT_GT(model.radius, 0.0);
-    EXPECT_LE(model.radius, jink::bridge::mavlink::emitter_model(0).radius);
+    EXPECT_LE(model.radius, emitter_model(0).radius);
   }
-  EXPECT_EQ(jink::bridge::mavlink::emitter_model(14).radius, 5.0);
+  EXPECT_EQ(emitter_model(14).radius, 5.0);
 }
 
 }  // namespace
+}  // namespace jink::bridge::mavlink

@@ -14,7 +14,7 @@ namespace {
 using planner::base::RandomStream;
 using planner::base::Track;
 
-constexpr double kStep = 0.05;          // s
+constexpr double kInterval = 0.05;      // s
 constexpr double kPositionSigma = 0.1;  // m
 constexpr double kVelocitySigma = 0.3;  // m/s
 
@@ -45,9 +45,9 @@ Errors follow(const std::function<Vec3(double)>& position, const std::function<V
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomStream random(seed);
     ImmFilter filter;
-    for (double t = 0.0; t < to; t += kStep) {
+    for (double t = 0.0; t < to; t += kInterval) {
       Track track = measured(position(t), velocity(t), random);
-      filter.update(kStep, track);
+      filter.update(kInterval, track);
       filter.apply(track);
       if (t < from) continue;
       const double p = (track.position - position(t)).squaredNorm() / 3.0;
@@ -101,10 +101,10 @@ TEST(ImmFilter, BeginsAnewAfterABounce) {
   ImmFilter filter;
   Track track;
   for (int k = 0; k < 60; ++k) {
-    const double x = 2.0 * kStep * k;
+    const double x = 2.0 * kInterval * k;
     const bool back = k >= 40;
     track = measured({back ? 8.0 - x : x, 0, 0}, {back ? -2.0 : 2.0, 0, 0}, random);
-    filter.update(kStep, track);
+    filter.update(kInterval, track);
     filter.apply(track);
     if (k == 42) {
       EXPECT_LT((track.velocity - Vec3(-2, 0, 0)).norm(), 1.0);
@@ -117,7 +117,7 @@ TEST(ImmFilter, BeginsAnewAfterABounce) {
 TEST(ImmFilter, BeginsAnewAfterALongGap) {
   RandomStream random(4);
   ImmFilter filter;
-  for (int k = 0; k < 40; ++k) filter.update(kStep, measured({0, 0, 0}, {0, 0, 0}, random));
+  for (int k = 0; k < 40; ++k) filter.update(kInterval, measured({0, 0, 0}, {0, 0, 0}, random));
   Track track = measured({50, 0, 0}, {3, 0, 0}, random);
   const Track raw = track;
   filter.update(5.0, track);
@@ -131,7 +131,7 @@ TEST(ImmFilter, NeverClaimsFarMoreThanItsInput) {
   track.position_sigma = 0.1;
   for (int k = 0; k < 400; ++k) {
     Track same = track;  // a writer that filters already: no noise at all
-    filter.update(kStep, same);
+    filter.update(kInterval, same);
     filter.apply(same);
     EXPECT_GE(same.position_sigma, ImmFilter::kLeastShare * 0.1);
     EXPECT_TRUE(same.position.allFinite());

@@ -5,12 +5,8 @@
 
 #include <vector>
 
+namespace jink::bridge::tracking {
 namespace {
-
-using jink::bridge::tracking::TrackMessage;
-using jink::bridge::tracking::TrackSource;
-using jink::bridge::tracking::TrackSources;
-using jink::bridge::tracking::TrackSourceStatus;
 
 // Has `left` messages of one writer.
 class FakeSource final : public TrackSource {
@@ -89,3 +85,4 @@ TEST(TrackSources, SumsTheStatusAndTellsTheNewestRefusal) {
 }
 
 }  // namespace
+}  // namespace jink::bridge::tracking

@@ -9,11 +9,9 @@
 
 #include "bridge/vehicle/status_text.hpp"
 
+namespace jink::bridge::vehicle {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::vehicle::EstimateResets;
-using jink::bridge::vehicle::StatusTexts;
 using Sample = EstimateResets::Sample;
 
 constexpr double kStep = 0.02;
@@ -201,3 +199,4 @@ TEST(StatusTexts, SaysWhereAChunkWasLost) {
 }
 
 }  // namespace
+}  // namespace jink::bridge::vehicle
