@@ -22,12 +22,12 @@ file(WRITE ${OUTPUT} "// Generated from ${FILE} by embed.cmake: do not edit.
 #include \"${HEADER}\"
 
 namespace ${NAMESPACE} {
-namespace {
-constexpr unsigned char kBytes[] = {
-${bytes}};
-}  // namespace
 
-std::string_view ${FUNCTION}() { return {reinterpret_cast<const char*>(kBytes), sizeof(kBytes)}; }
+std::string_view ${FUNCTION}() {
+  static constexpr unsigned char bytes[] = {
+${bytes}};
+  return {reinterpret_cast<const char*>(bytes), sizeof(bytes)};
+}
 
 }  // namespace ${NAMESPACE}
 ")

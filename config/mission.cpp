@@ -9,7 +9,6 @@
 namespace jink::config {
 namespace {
 
-constexpr Range kCoordinate = within(1e5);
 constexpr std::size_t kMostWaypoints = 10000;
 
 bool is_integer_in(std::string_view text, const Range& range) {

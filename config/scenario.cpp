@@ -11,7 +11,6 @@ namespace jink::config {
 namespace {
 
 // Bounds that no sane scenario meets. They keep every later computation far from overflow and catch wrong units.
-constexpr Range kCoordinate = within(1e5);
 constexpr Range kSpeed = within(1e3);
 constexpr Range kAcceleration = within(1e3);
 constexpr Range kSize = above(0, 1e3);

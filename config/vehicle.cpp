@@ -12,14 +12,14 @@
 namespace jink::config {
 namespace {
 
-struct Field {
+struct Limit {
   std::string_view name;
   double planner::base::VehicleLimits::*member;
   Range range;
 };
 
 // No aircraft of this kind comes near the upper bounds; a value beyond them is in the wrong unit.
-constexpr std::array<Field, 8> kFields = {{
+constexpr std::array<Limit, 8> kLimits = {{
     {"radius", &planner::base::VehicleLimits::radius, above(0, 100)},
     {"length", &planner::base::VehicleLimits::length, above(0, 100)},
     {"mass", &planner::base::VehicleLimits::mass, above(0, 10000)},
@@ -32,11 +32,11 @@ constexpr std::array<Field, 8> kFields = {{
 
 planner::base::VehicleLimits read_limits(const Value& value) {
   std::vector<std::string_view> keys;
-  keys.reserve(kFields.size());
-  for (const Field& field : kFields) keys.push_back(field.name);
+  keys.reserve(kLimits.size());
+  for (const Limit& limit : kLimits) keys.push_back(limit.name);
   const Map map(value, std::move(keys));
   planner::base::VehicleLimits limits;
-  for (const Field& field : kFields) limits.*field.member = map.number(field.name, field.range);
+  for (const Limit& limit : kLimits) limits.*limit.member = map.number(limit.name, limit.range);
   if (limits.cruise_speed > limits.max_speed) {
     map.at("cruise_speed", "").fail("is above max_speed; expected a number in " + above(0, limits.max_speed).text());
   }
@@ -75,8 +75,8 @@ bool is_project_vehicle(const std::string& name, const planner::base::VehicleLim
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return false;
   const planner::base::VehicleLimits known = load_vehicle(file);
-  return std::all_of(kFields.begin(), kFields.end(),
-                     [&](const Field& field) { return known.*field.member == limits.*field.member; });
+  return std::all_of(kLimits.begin(), kLimits.end(),
+                     [&](const Limit& limit) { return known.*limit.member == limits.*limit.member; });
 }
 
 NamedVehicle read_vehicle(const Value& value, const std::filesystem::path& file,

@@ -95,6 +95,9 @@ class Map {
 /// bad syntax, nesting deeper than 32, aliases that contain themselves or expand to more than a million values.
 Value read_document(const std::filesystem::path& file);
 
+/// m: of every coordinate. What is beyond is in the wrong unit.
+inline constexpr Range kCoordinate = within(1e5);
+
 /// A box given by `min` and `max`, both required, min < max on each axis.
 planner::base::Box read_box(const Value& value, const Range& range);
 

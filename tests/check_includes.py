@@ -1,9 +1,10 @@
-"""Precompiled headers (cmake/precompiled.hpp) hide an include that is missing. This finds it in the text.
+"""Finds in the text what compiling hides: a file must compile alone, as it does for who builds one.
 
     check_includes.py SOURCE_DIR
 
-A file that names what a precompiled header declares has to include that header: itself, or through headers of the
-project that it includes.
+Precompiled headers (cmake/precompiled.hpp) hide an include that is missing: a file that names what one of them declares
+has to include that header, itself or through headers of the project that it includes. Sources compiled as one
+(JINK_UNITY) see each other: none may use what another of its folder declares or includes and it does not.
 """
 
 import pathlib
@@ -78,8 +79,41 @@ def reached(name, seen):
     return seen
 
 
+def code_of(name):
+    """Without includes, comments, texts and the names of tests."""
+    text = re.sub(r'R"\((.*?)\)"|"(\\.|[^"\\\n])*"', '""', (source / name).read_text(), flags=re.DOTALL)
+    return re.sub(r"^#include.*|//.*|^TEST(_F|_P)?\(\w+, \w+", "", text, flags=re.MULTILINE)
+
+
+# At the beginning of a line, since namespaces do not indent: a type, an alias, a name that is used, a function or a value.
+DECLARED = re.compile(
+    r"^(?:template <.*>\n)?(?:(?:constexpr|const|static|inline|\[\[\w+\]\]) )*"
+    r"(?:(?:struct|class|enum class|using|namespace) (\w+)(?= |;|$)|using [\w:]*::(\w+);|"
+    r"(?!return|namespace|using|struct|class|enum|template|TEST|INST|static_assert)[A-Za-z_][\w:<>,&* ()]*?[ &*](\w+)(?:\(|\[| = |\{|;))",
+    re.MULTILINE)
+
+
+def borrowed():
+    """(source, name) where a source uses a name that only others of its folder know. A name that the source declares in
+    whatever place, as a variable or a member, is not looked at."""
+    code = {name: code_of(name) for name in files}
+    declared = {name: {n for names in DECLARED.findall(text) for n in names if n} for name, text in code.items()}
+    sees = {name: {name, *reached(name, set())} & files.keys() for name in files if name.endswith(".cpp")}
+    known = {name: set().union(*(declared[h] for h in headers)) for name, headers in sees.items()}
+    words = {name: set(re.findall(r"\w+", text)) for name, text in code.items()}
+    for name, headers in sees.items():
+        own = code[name]
+        bare = set(re.findall(r"(?<![\w.:>])(?<!->)\w+", own))
+        neighbours = [known[other] for other in sees if pathlib.Path(other).parent == pathlib.Path(name).parent]
+        candidates = set().union(*neighbours) & bare - known[name]
+        for word in sorted(candidates.difference(*(words[h] for h in headers if h != name))):
+            local = rf"(?:\b(?!return|throw|else|case|new)\w+|[>&*\]]) ?[&*]*\s?\b{word}\b\s*[=;,({{\[):>]|, {word} ="
+            if not re.search(local, own):
+                yield name, word
+
+
 def main():
-    faults = []
+    faults = [f"{name} uses {word}, which only other sources of its folder know" for name, word in borrowed()]
     for name, (text, _) in files.items():
         have = reached(name, set())
         faults += [f"{name} does not include <{header}>" for header, names in DECLARES.items()

@@ -32,17 +32,17 @@ def rooms():
 
 
 def commands():
-    """Room -> compile command of one of its sources, without the source."""
+    """Room -> compile command of one of its sources, or of all at once, without the source."""
     found = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        file = pathlib.Path(entry["file"])
-        if not file.is_relative_to(source) or file.relative_to(source).parts[0] not in TOP:
-            continue
         words = [w for w in shlex.split(entry["command"]) if w != entry["file"]]
         if "ccache" in words[0]:
             words = words[1:]
         output = words.index("-o")
-        found.setdefault(room_of(file), [w for i, w in enumerate(words) if w != "-c" and i not in (output, output + 1)])
+        room = words[output + 1].partition("/CMakeFiles/")[0]
+        if room.split("/")[0] not in TOP or not any((source / room).glob("*.cpp")):
+            continue
+        found.setdefault(room, [w for i, w in enumerate(words) if w != "-c" and i not in (output, output + 1)])
     return found
 
 

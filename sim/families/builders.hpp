@@ -5,6 +5,8 @@
 // (but in braces, which go from left to right).
 #pragma once
 
+#include <numbers>
+
 #include "config/scenario.hpp"
 #include "planner/base/random.hpp"
 #include "planner/base/types.hpp"
@@ -12,6 +14,9 @@
 namespace jink::sim::families {
 
 using planner::base::RandomStream;
+
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
+inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The straight flight (world_families.hpp) and a frame along it.
 class Mission {

@@ -12,7 +12,6 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kCube = 0.8;       // m, edge of the obstacles of both corridors
 constexpr double kCurved = 0.65;    // share of the obstacles that fly trefoils, in both
 constexpr double kTimeLimit = 100;  // s, SANDO's

@@ -12,8 +12,6 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 Vec3 random_point(RandomStream& random, const planner::base::Box& box) {
   const double x = random.uniform(box.min.x(), box.max.x());
   const double y = random.uniform(box.min.y(), box.max.y());

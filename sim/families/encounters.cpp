@@ -9,7 +9,6 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLateRange = 7.0;  // m, of the sensing in `late`
 
 /// A level unit vector at that azimuth.

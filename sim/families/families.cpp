@@ -15,8 +15,6 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 double cruise_of(const Vec3& forward, const planner::base::VehicleLimits& limits) {
   const double climb = std::abs(forward.z());
   return climb * limits.cruise_speed > limits.max_climb ? limits.max_climb / climb : limits.cruise_speed;

@@ -10,7 +10,7 @@
 namespace jink::sim::flight {
 namespace {
 
-std::string at_time(double t) {
+std::string at_rounded_time(double t) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), " at t = %.2f s", t);
   return text.data();
@@ -97,14 +97,14 @@ void SimulatorJudge::judge_progress(std::size_t k, double t, const JudgedVehicle
   flight.path_length += (now.position - last_[k]).norm();
   flight.max_speed = std::max(flight.max_speed, now.velocity.norm());
   if (!world_.inside(now.position) && now.offboard) {
-    decide(k, bridge::supervisor::Outcome::kLeftWorld, "left the world" + at_time(t), verdicts);
+    decide(k, bridge::supervisor::Outcome::kLeftWorld, "left the world" + at_rounded_time(t), verdicts);
   } else if ((now.position - vehicles_[k].target).norm() <= kAtTarget) {
-    decide(k, bridge::supervisor::Outcome::kReached, "the vehicle came to the target" + at_time(t), verdicts);
+    decide(k, bridge::supervisor::Outcome::kReached, "the vehicle came to the target" + at_rounded_time(t), verdicts);
   }
 }
 
 void SimulatorJudge::hit(std::size_t k, const std::string& what, double t, std::vector<Verdict>& verdicts) {
-  decide(k, bridge::supervisor::Outcome::kCollision, "hit " + what + at_time(t), verdicts);
+  decide(k, bridge::supervisor::Outcome::kCollision, "hit " + what + at_rounded_time(t), verdicts);
 }
 
 void SimulatorJudge::decide(std::size_t k, bridge::supervisor::Outcome outcome, std::string reason,

@@ -21,7 +21,6 @@ constexpr int kGroundLocalPort = 18570;
 constexpr int kGroundRemotePort = 14550;
 
 constexpr double kReadyDelay = 4.3;        ///< s, of PX4's SITL: the measure of the start-up times
-constexpr double kLinkUp = 0.3;            ///< s after its start, when it begins to listen
 constexpr std::size_t kListedPerPoll = 2;  ///< parameters of a list: 500 a second, as a list at full rate
 constexpr std::size_t kTextChunk = 50;     ///< characters that STATUSTEXT holds
 

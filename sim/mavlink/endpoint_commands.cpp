@@ -9,9 +9,8 @@ namespace {
 
 constexpr float kForce = 21196.0F;  ///< param2 of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr double kMicroseconds = 1e6;
-constexpr float kMaxIntervalUs = 2e9F;    ///< what MESSAGE_INTERVAL can tell
-constexpr double kMaxAltitude = 10000.0;  ///< m, of anything that a command may name
-constexpr double kDegreesE7 = 1e7;
+constexpr float kMaxIntervalUs = 2e9F;              ///< what MESSAGE_INTERVAL can tell
+constexpr double kMaxAltitude = 10000.0;            ///< m, of anything that a command may name
 constexpr std::int32_t kNoCoordinate = 0x7FFFFFFF;  ///< "not given" in COMMAND_INT
 
 double coordinate(std::int32_t field) {

@@ -11,6 +11,14 @@
 
 namespace jink::sim::mavlink {
 
+inline constexpr double kDegreesE7 = 1e7;
+inline constexpr double kLinkUp = 0.3;  ///< s after PX4's start, when it begins to send and to listen
+
+/// As most fields carry it.
+[[nodiscard]] inline float real(double value) {
+  return static_cast<float>(value);
+}
+
 /// What COMMAND_LONG and COMMAND_INT have in common.
 struct Command {
   std::uint16_t id = 0;

@@ -12,10 +12,6 @@ namespace {
 constexpr double kHoverThrottle = 0.5;  ///< of full thrust, PX4's MPC_THR_HOVER
 constexpr float kTemperatureDegC = 15.0F;
 
-float real(double value) {
-  return static_cast<float>(value);
-}
-
 /// hPa, of the standard atmosphere.
 double pressure_hpa(double altitude_m) {
   return 1013.25 * std::pow(1.0 - 2.25577e-5 * altitude_m, 5.25588);

@@ -13,7 +13,6 @@ namespace jink::sim::mavlink {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kDegreesE7 = 1e7;
 constexpr double kCenti = 100.0;
 constexpr double kMilli = 1000.0;
 constexpr double kNearZero = 1e-9;
@@ -23,10 +22,6 @@ constexpr std::uint32_t kSensorsPresent = 0x0300402F;
 constexpr std::uint32_t kSensorsEnabled = 0x0301402F;
 constexpr std::uint32_t kSensorsHealthy = 0x0320C83F;
 static_assert((kSensorsHealthy & MAV_SYS_STATUS_PREARM_CHECK) == 0);
-
-float real(double value) {
-  return static_cast<float>(value);
-}
 
 std::int16_t clamped_16(double value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -32768.0, 32767.0)));
@@ -62,7 +57,6 @@ std::array<float, 21> upper_triangle(const std::array<float, 6>& diagonal) {
 }  // namespace
 
 std::span<const MavlinkEndpoint::Impl::MessageKind> MavlinkEndpoint::Impl::message_kinds() {
-  constexpr double kLinkUp = 0.3;  // s after PX4's start
   static constexpr std::array kKinds{
       MessageKind{MAVLINK_MSG_ID_HEARTBEAT, 1, 1.3, &Impl::send_heartbeat},
       MessageKind{MAVLINK_MSG_ID_ATTITUDE, 100, kLinkUp, &Impl::send_attitude},

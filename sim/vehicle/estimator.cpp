@@ -2,18 +2,17 @@
 #include "sim/vehicle/estimator.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace jink::sim::vehicle {
 namespace {
 
-constexpr double kStep = VehicleModel::kStep;
 constexpr double kNoiseTime = 1.5;      // s, from the recordings: 1 cm/s from sample to sample at 30 Hz
 constexpr double kWalk = 0.1;           // m/s per square root of a second without GPS: this model's choice
 constexpr double kRecoveryTime = 1.0;   // s, in which GPS takes the errors of dead reckoning away
 constexpr double kReckonedNone = 1e-4;  // m and m/s: gone
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kAccuracy = 0.29;  // m, as PX4's SITL reports
+constexpr double kAccuracy = 0.29;      // m, as PX4's SITL reports
 constexpr double kHeightAccuracy = 0.03;
 
 // Names of their own among the streams of a seed.
@@ -122,7 +121,7 @@ void Estimator::update(const Motion& truth) {
   motion_.velocity += ins_->velocity();
   const Vec3 error = ins_->attitude();
   if (error.norm() > 0.0) motion_.attitude = Eigen::AngleAxisd(error.norm(), error.normalized()) * truth.attitude;
-  motion_.yaw = std::remainder(truth.yaw + error.z(), 2.0 * kPi);
+  motion_.yaw = std::remainder(truth.yaw + error.z(), 2.0 * std::numbers::pi);
 }
 
 double Estimator::horizontal_accuracy() const {

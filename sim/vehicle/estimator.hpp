@@ -55,6 +55,8 @@ class Estimator {
   [[nodiscard]] double vertical_accuracy() const;
 
  private:
+  static constexpr double kStep = VehicleModel::kStep;
+
   void reckon();
   void update(const Motion& truth);
 

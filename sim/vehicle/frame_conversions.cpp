@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace jink::sim::vehicle {
-
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-}  // namespace
 
 Vec3 swap_enu_ned(const Vec3& v) {
   return {v.y(), v.x(), -v.z()};
@@ -19,7 +16,7 @@ Vec3 swap_flu_frd(const Vec3& v) {
 }
 
 double swap_yaw(double yaw) {
-  return std::remainder(kPi / 2.0 - yaw, 2.0 * kPi);
+  return std::remainder(std::numbers::pi / 2.0 - yaw, 2.0 * std::numbers::pi);
 }
 
 Eigen::Quaterniond attitude_ned(const Eigen::Quaterniond& attitude_enu) {

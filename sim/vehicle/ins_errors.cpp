@@ -6,7 +6,6 @@
 namespace jink::sim::vehicle {
 namespace {
 
-constexpr double kStep = VehicleModel::kStep;
 constexpr std::uint64_t kStream = 0x696e73;  // "ins": a name of its own among the streams of a seed
 
 /// Standard deviations: what the filter assumes, and what the sensor has. 0 and less: not a part of it.

@@ -45,6 +45,8 @@ class InsErrors {
   [[nodiscard]] double vertical_accuracy() const;
 
  private:
+  static constexpr double kStep = VehicleModel::kStep;
+
   /// Where each part of the error state begins; the biases are the filter's estimates of what is truly zero.
   enum Index {
     kPosition = 0,

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 namespace jink::sim::vehicle {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 void require_positive(const char* what, double value) {
   if (!(value > 0.0) || !std::isfinite(value)) {
@@ -32,7 +31,7 @@ Vec3 clamp_horizontal(const Vec3& v, double max) {
 }
 
 double wrap_angle(double angle) {
-  return std::remainder(angle, 2.0 * kPi);
+  return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
 /// The part of the way to its input that a first-order lag covers in one step.

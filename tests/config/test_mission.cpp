@@ -8,7 +8,7 @@
 namespace jink::config {
 namespace {
 
-const std::string kValid =
+const std::string kValidMission =
     "format: jink-mission/1\n"                                   // line 1
     "name: survey\n"                                             // 2
     "connection: udpin://127.0.0.1:14541\n"                      // 3
@@ -22,13 +22,13 @@ const std::string kValid =
     "tracks: {required: false, timeout_s: 1.5, coast_s: 0.5}\n"  // 11
     "time_limit: 120\n";                                         // 12
 
-void load(const std::filesystem::path& file) {
+void try_mission(const std::filesystem::path& file) {
   static_cast<void>(load_mission(file));
 }
 
 TEST(LoadMission, ReadsEveryKey) {
-  const TempFolder folder;
-  const Mission m = load_mission(folder.write("m.yaml", kValid));
+  const Folder folder;
+  const Mission m = load_mission(folder.write("m.yaml", kValidMission));
   EXPECT_EQ(m.name, "survey");
   EXPECT_EQ(m.connection, "udpin://127.0.0.1:14541");
   EXPECT_EQ(m.vehicle_name, "ardrone2");
@@ -49,7 +49,7 @@ TEST(LoadMission, ReadsEveryKey) {
 }
 
 TEST(LoadMission, FillsInWhatIsOptional) {
-  const TempFolder folder;
+  const Folder folder;
   const Mission m =
       load_mission(folder.write("m.yaml",
                                 "format: jink-mission/1\nname: short\nconnection: serial:///dev/ttyACM0:921600\n"
@@ -72,11 +72,11 @@ TEST(LoadMission, FillsInWhatIsOptional) {
 }
 
 TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
-  std::string text = kValid;
+  std::string text = kValidMission;
   text += "state: dds\nsetpoints: dds\nintents: false\n";
   text.replace(text.find("domain: 7"), 9, "domain: 7, namespace: px4_1/team");
   text.replace(text.find("coast_s: 0.5"), 12, "sources: [adsb]");
-  const TempFolder folder;
+  const Folder folder;
   const Mission m = load_mission(folder.write("m.yaml", text));
   EXPECT_EQ(m.dds_namespace, "px4_1/team");
   EXPECT_EQ(m.state, Transport::kDds);
@@ -91,9 +91,9 @@ TEST(LoadMission, AcceptsTheUrlsOfMavsdk) {
        {"udp://:14540", "udpin://0.0.0.0:14540", "udpout://192.168.1.12:14550", "tcp://localhost:5760", "tcpin://:5760",
         "tcpout://10.0.0.2:5760", "udpin://[::1]:14540", "serial:///dev/ttyACM0", "serial:///dev/ttyUSB0:57600",
         "serial_flowcontrol:///dev/ttyS1:921600"}) {
-    std::string text = kValid;
+    std::string text = kValidMission;
     text.replace(text.find("udpin://127.0.0.1:14541"), 23, url);
-    const TempFolder folder;
+    const Folder folder;
     const auto file = folder.write("m.yaml", text);
     EXPECT_NO_THROW(EXPECT_EQ(load_mission(file).connection, url)) << url;
   }
@@ -118,7 +118,7 @@ TEST(LoadMission, RefusesBadConnections) {
       {url, "", 3, "connection", "null", "is empty; expected text"},
       {"connection: " + url + "\n", "", 1, "connection", "", "missing; expected a MAVSDK URL"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidMission, bad, try_mission);
 }
 
 TEST(LoadMission, RefusesBadValues) {
@@ -153,7 +153,7 @@ TEST(LoadMission, RefusesBadValues) {
       {"time_limit: 120", "time_limits: 120", 12, "time_limits", "120", "did you mean 'time_limit'?"},
       {"waypoints: [[5, 5, 2], [20, 0, 0]]\n", "", 1, "waypoints", "", "missing; expected a list of [x, y, z]"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidMission, bad, try_mission);
 }
 
 }  // namespace

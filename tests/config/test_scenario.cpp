@@ -14,7 +14,7 @@ const std::string kVehicle =
     "{radius: 0.3, length: 0.5, mass: 0.4, max_speed: 5, cruise_speed: 3, max_acceleration: 6, max_jerk: 30, "
     "max_climb: 2}";
 
-const std::string kValid =
+const std::string kValidScenario =
     "format: jink-scenario/1\n"  // line 1
     "name: example\n"            // 2
     "start: [0, 0, 1.5]\n"       // 3
@@ -36,12 +36,12 @@ const std::string kValid =
     "- {vertices: [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], motion: {type: waypoints, times: [0, 5, 9], points: "
     "[[3,3,1],[6,0,1],[9,3,2]]}}\n";  // 14
 
-void load(const std::filesystem::path& file) {
+void try_scenario(const std::filesystem::path& file) {
   static_cast<void>(load_scenario(file));
 }
 
 Scenario loaded(const std::string& text) {
-  const TempFolder folder;
+  const Folder folder;
   return load_scenario(folder.write("s.yaml", text));
 }
 
@@ -52,7 +52,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(LoadScenario, ReadsEveryKey) {
-  const Scenario s = loaded(kValid);
+  const Scenario s = loaded(kValidScenario);
   EXPECT_EQ(s.name, "example");
   EXPECT_EQ(s.start, Vec3(0, 0, 1.5));
   EXPECT_EQ(s.target, Vec3(20, 0, 1.5));
@@ -72,7 +72,7 @@ TEST(LoadScenario, ReadsEveryKey) {
 }
 
 TEST(LoadScenario, ReadsEveryShapeAndMotion) {
-  const Scenario s = loaded(kValid);
+  const Scenario s = loaded(kValidScenario);
   ASSERT_EQ(s.obstacles.size(), 5U);
   EXPECT_EQ(std::get<SphereShape>(s.obstacles[0].shape).radius, 0.5);
   const auto linear = std::get<LinearMotion>(s.obstacles[0].motion);
@@ -151,7 +151,7 @@ TEST(LoadScenario, RefusesBadTopLevelKeys) {
       {"mass: 0.4, ", "", 6, "vehicle.mass", "", "missing; expected a number in (0, 10000]"},
       {"obstacles:\n", "obstacels:\n", 9, "obstacels", "", "did you mean 'obstacles'?"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }
 
 TEST(LoadScenario, RefusesBadSensing) {
@@ -165,7 +165,7 @@ TEST(LoadScenario, RefusesBadSensing) {
       {"dropout: 0.4", "dropout: 1", 8, "sensing.dropout", "1", "is not in [0, 1)"},
       {"rate: 25", "rat: 25", 8, "sensing.rat", "25", "did you mean 'rate'?"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }
 
 TEST(LoadScenario, RefusesBadShapes) {
@@ -181,7 +181,7 @@ TEST(LoadScenario, RefusesBadShapes) {
        "has an enclosing sphere of radius 0; expected one in (0, 1000]"},
       {"[0,1,0]", "[0,.nan,0]", 14, "obstacles[4].vertices[2][1]", ".nan", "not a finite number"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }
 
 TEST(LoadScenario, RefusesBadMotions) {
@@ -209,17 +209,17 @@ TEST(LoadScenario, RefusesBadMotions) {
       {"times: [0, 5, 9]", "times: [0, 5]", 14, "obstacles[4].motion.points", "", "is a list of 3; expected a list"},
       {"times: [0, 5, 9]", "times: []", 14, "obstacles[4].motion.times", "[]", "is a list of 0"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }
 
-const std::string kTeam = kValid +
+const std::string kTeam = kValidScenario +
                           "vehicles:\n"                                                         // 15
                           "- {start: [0, 2, 1.5], target: [20, 2, 1.5]}\n"                      // 16
                           "- {start: [0, 4, 1.6], target: [20, 4, 1.7], vehicle: ardrone2}\n";  // 17
 
 TEST(LoadScenario, ReadsFurtherVehicles) {
-  EXPECT_TRUE(loaded(kValid).vehicles.empty());
-  EXPECT_EQ(all_vehicles(loaded(kValid)).size(), 1U);
+  EXPECT_TRUE(loaded(kValidScenario).vehicles.empty());
+  EXPECT_EQ(all_vehicles(loaded(kValidScenario)).size(), 1U);
   const Scenario s = loaded(kTeam);
   ASSERT_EQ(s.vehicles.size(), 2U);
   EXPECT_EQ(s.vehicles[0].start, Vec3(0, 2, 1.5));
@@ -251,7 +251,7 @@ TEST(LoadScenario, RefusesBadFurtherVehicles) {
        "vehicle: ardrone2}\n",
        "vehicles: [1,2,3,4,5,6,7,8,9,10]\n", 15, "vehicles", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", "in [0, 9]"},
   };
-  for (const BadCase& bad : cases) expect_refused(kTeam, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kTeam, bad, try_scenario);
 }
 
 const std::string kFaulty = kTeam +
@@ -279,7 +279,7 @@ const std::string kFaulty = kTeam +
                             "- {at: 18, kind: refuse_offboard}\n";                                                // 39
 
 TEST(LoadScenario, ReadsWindAndEstimate) {
-  const Scenario plain = loaded(kValid);
+  const Scenario plain = loaded(kValidScenario);
   EXPECT_EQ(plain.wind.mean, Vec3::Zero());
   EXPECT_EQ(plain.wind.gust, 0.0);
   EXPECT_TRUE(plain.estimate.px4);
@@ -297,13 +297,14 @@ TEST(LoadScenario, ReadsWindAndEstimate) {
 }
 
 TEST(LoadScenario, KnowsWhoseEstimateItIsAndWhereItSenses) {
-  EXPECT_TRUE(loaded(kValid + "estimate: px4\n").estimate.px4);
-  EXPECT_EQ(loaded(kValid + "estimate: none\n").estimate, (EstimateErrors{.px4 = false}));
-  expect_refused(kValid + "estimate: none\n", {"estimate: none", "estimate: some", 15, "estimate", "some", "px4"},
-                 load);
-  EXPECT_EQ(loaded(kValid).sensing.sensed_from, SensedFrom::kWorld);
-  EXPECT_EQ(loaded(replaced(kValid, "dropout: 0.4", "sensed_from: vehicle")).sensing.sensed_from, SensedFrom::kVehicle);
-  expect_refused(kTeam, {"dropout: 0.4", "sensed_from: vehicle", 8, "sensing", "", "several"}, load);
+  EXPECT_TRUE(loaded(kValidScenario + "estimate: px4\n").estimate.px4);
+  EXPECT_EQ(loaded(kValidScenario + "estimate: none\n").estimate, (EstimateErrors{.px4 = false}));
+  expect_refused(kValidScenario + "estimate: none\n",
+                 {"estimate: none", "estimate: some", 15, "estimate", "some", "px4"}, try_scenario);
+  EXPECT_EQ(loaded(kValidScenario).sensing.sensed_from, SensedFrom::kWorld);
+  EXPECT_EQ(loaded(replaced(kValidScenario, "dropout: 0.4", "sensed_from: vehicle")).sensing.sensed_from,
+            SensedFrom::kVehicle);
+  expect_refused(kTeam, {"dropout: 0.4", "sensed_from: vehicle", 8, "sensing", "", "several"}, try_scenario);
 }
 
 TEST(LoadScenario, ReadsEveryFault) {
@@ -370,22 +371,22 @@ TEST(LoadScenario, RefusesBadFaults) {
       {"drift: 0.3", "drft: 0.3", 19, "estimate.drft", "0.3", "did you mean 'drift'?"},
       {"drift_time: 40", "drift_time: 0", 19, "estimate.drift_time", "0", "is not in (0, 1000000]"},
   };
-  for (const BadCase& bad : cases) expect_refused(kFaulty, bad, load);
-  expect_contains(error_of([] { loaded(kValid + "faults: 3\n"); }), ":15: key 'faults': value '3' is a number");
-  expect_contains(error_of([] { loaded(kValid + "faults:\n- {at: 0, kind: reboot, vehicle: 1}\n"); }),
+  for (const BadCase& bad : cases) expect_refused(kFaulty, bad, try_scenario);
+  expect_contains(error_of([] { loaded(kValidScenario + "faults: 3\n"); }), ":15: key 'faults': value '3' is a number");
+  expect_contains(error_of([] { loaded(kValidScenario + "faults:\n- {at: 0, kind: reboot, vehicle: 1}\n"); }),
                   "is not in [0, 0]");
 }
 
 TEST(LoadScenario, NamesTheLineOfAValueInALongList) {
-  const std::string text = replaced(kValid, "start: [0, 0, 1.5]", "start:\n- 0\n- zero\n- 1.5");
-  const TempFolder folder;
+  const std::string text = replaced(kValidScenario, "start: [0, 0, 1.5]", "start:\n- 0\n- zero\n- 1.5");
+  const Folder folder;
   const auto file = folder.write("s.yaml", text);
-  expect_contains(error_of([&] { load(file); }), ":5: key 'start[1]': value 'zero'");
+  expect_contains(error_of([&] { try_scenario(file); }), ":5: key 'start[1]': value 'zero'");
 }
 
 TEST(LoadScenario, FindsAVehicleBesideTheScenariosFolderFirst) {
-  const TempFolder folder;
-  const std::string text = replaced(kValid, kVehicle, "ardrone2");
+  const Folder folder;
+  const std::string text = replaced(kValidScenario, kVehicle, "ardrone2");
   const auto file = folder.write("scenarios/s.yaml", text);
   // The project's own, as there is none beside the scenario yet.
   const Scenario own = load_scenario(file);
@@ -403,16 +404,16 @@ TEST(LoadScenario, FindsAVehicleBesideTheScenariosFolderFirst) {
 }
 
 TEST(LoadScenario, LetsTheEnvironmentNameTheProjectsFolder) {
-  const TempFolder folder;
+  const Folder folder;
   folder.write("elsewhere/vehicles/kite.yaml",
                "radius: 1\nlength: 2\nmass: 3\nmax_speed: 4\ncruise_speed: 4\n"
                "max_acceleration: 6\nmax_jerk: 7\nmax_climb: 8\n");
-  const auto file = folder.write("s.yaml", replaced(kValid, kVehicle, "kite"));
+  const auto file = folder.write("s.yaml", replaced(kValidScenario, kVehicle, "kite"));
   // No test of this program starts a thread.
   ASSERT_EQ(setenv("JINK_CONFIG_DIR", (folder.path() / "elsewhere").c_str(), 1), 0);  // NOLINT(concurrency-mt-unsafe)
   EXPECT_EQ(load_scenario(file).vehicle.max_jerk, 7.0);
   ASSERT_EQ(unsetenv("JINK_CONFIG_DIR"), 0);  // NOLINT(concurrency-mt-unsafe)
-  expect_contains(error_of([&] { load(file); }), "is not a vehicle");
+  expect_contains(error_of([&] { try_scenario(file); }), "is not a vehicle");
 }
 
 TEST(LoadScenario, NamesTheVehiclesThatExist) {
@@ -425,13 +426,13 @@ TEST(LoadScenario, NamesTheVehiclesThatExist) {
       {kVehicle, "..", 6, "vehicle", "..", "is not the name of a vehicle"},
       {kVehicle, "[1]", 6, "vehicle", "[1]", "is a list of 1; expected text"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }
 
 TEST(LoadScenario, BlamesTheVehicleFileForItsOwnFaults) {
-  const TempFolder folder;
+  const Folder folder;
   const auto vehicle = folder.write("broken.yaml", "radius: 1\nlength: -2\n");
-  const auto file = folder.write("s.yaml", replaced(kValid, kVehicle, "broken"));
+  const auto file = folder.write("s.yaml", replaced(kValidScenario, kVehicle, "broken"));
   expect_contains(error_of([&] { static_cast<void>(load_scenario(file, folder.path())); }), vehicle.string() + ":");
 }
 

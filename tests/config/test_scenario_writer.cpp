@@ -17,7 +17,7 @@ namespace {
 using testing_support::expect_same;
 
 Scenario read_back(const Scenario& scenario) {
-  const TempFolder folder;
+  const Folder folder;
   return load_scenario(folder.write("s.yaml", to_yaml(scenario)));
 }
 

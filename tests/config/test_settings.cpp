@@ -192,7 +192,7 @@ TEST(LoadSettings, RequiresEveryKey) {
     // The key's own section, as some names occur in two.
     const std::size_t begin = text.find("\n" + section + ":");
     text.erase(text.find(line + "\n", begin), line.size() + 1);
-    const TempFolder folder;
+    const Folder folder;
     const auto file = folder.write("p.yaml", text);
     expect_contains(error_of([&] { static_cast<void>(load_settings(file)); }),
                     ": key '" + key + "': missing; expected ");

@@ -12,6 +12,7 @@
 #include "config/settings.hpp"
 #include "config/vehicle.hpp"
 #include "tests/config/yaml_case.hpp"
+#include "tests/support/same_scenario.hpp"
 
 namespace jink::config {
 namespace {
@@ -48,16 +49,7 @@ TEST(ShippedFiles, EveryMissionLoadsAndIsNamedAsItsFile) {
 }
 
 TEST(ShippedFiles, ArDroneIsTheDefaultVehicle) {
-  const planner::base::VehicleLimits file = load_vehicle(kConfig / "vehicles" / "ardrone2.yaml");
-  const planner::base::VehicleLimits defaults;
-  EXPECT_EQ(file.radius, defaults.radius);
-  EXPECT_EQ(file.length, defaults.length);
-  EXPECT_EQ(file.mass, defaults.mass);
-  EXPECT_EQ(file.max_speed, defaults.max_speed);
-  EXPECT_EQ(file.cruise_speed, defaults.cruise_speed);
-  EXPECT_EQ(file.max_acceleration, defaults.max_acceleration);
-  EXPECT_EQ(file.max_jerk, defaults.max_jerk);
-  EXPECT_EQ(file.max_climb, defaults.max_climb);
+  testing_support::expect_same(load_vehicle(kConfig / "vehicles" / "ardrone2.yaml"), planner::base::VehicleLimits{});
 }
 
 TEST(ShippedFiles, ConfigFolderIsTheSourceTrees) {

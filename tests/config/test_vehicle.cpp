@@ -9,7 +9,7 @@
 namespace jink::config {
 namespace {
 
-const std::string kValid =
+const std::string kValidVehicle =
     "radius: 0.25\n"           // line 1
     "length: 0.5\n"            // 2
     "mass: 1.5\n"              // 3
@@ -19,22 +19,22 @@ const std::string kValid =
     "max_jerk: +30.\n"         // 7
     "max_climb: .75\n";        // 8
 
-void load(const std::filesystem::path& file) {
+void try_vehicle(const std::filesystem::path& file) {
   static_cast<void>(load_vehicle(file));
 }
 
 std::string error_for(const std::string& text) {
-  const TempFolder folder;
+  const Folder folder;
   const auto file = folder.write("v.yaml", text);
-  std::string error = error_of([&] { load(file); });
+  std::string error = error_of([&] { try_vehicle(file); });
   EXPECT_TRUE(error.starts_with(file.string() + ":")) << error;
   EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   return error.substr(std::min(error.size(), file.string().size()));
 }
 
 TEST(LoadVehicle, ReadsEveryKey) {
-  const TempFolder folder;
-  const planner::base::VehicleLimits v = load_vehicle(folder.write("v.yaml", kValid));
+  const Folder folder;
+  const planner::base::VehicleLimits v = load_vehicle(folder.write("v.yaml", kValidVehicle));
   EXPECT_EQ(v.radius, 0.25);
   EXPECT_EQ(v.length, 0.5);
   EXPECT_EQ(v.mass, 1.5);
@@ -70,7 +70,7 @@ TEST(LoadVehicle, RefusesBadValuesWithPlaceAndRange) {
       {"max_speed: 12", "max_speed: 4", 5, "cruise_speed", "5", "above max_speed; expected a number in (0, 4]"},
       {"max_climb: .75", "max_climb: -1", 8, "max_climb", "-1", "(0, 1000]"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidVehicle, bad, try_vehicle);
 }
 
 TEST(LoadVehicle, RefusesKeysThatAreUnknownMissingOrRepeated) {
@@ -83,7 +83,7 @@ TEST(LoadVehicle, RefusesKeysThatAreUnknownMissingOrRepeated) {
       {"mass: 1.5\n", "mass: 1.5\nradius: 0.3\n", 4, "radius", "0.3", "given again with value '0.3', first in line 1"},
       {"mass: 1.5\n", "mass: 1.5\n[a]: 2\n", 4, "[a]", "", "the key is a list of 1; expected a name"},
   };
-  for (const BadCase& bad : cases) expect_refused(kValid, bad, load);
+  for (const BadCase& bad : cases) expect_refused(kValidVehicle, bad, try_vehicle);
 }
 
 TEST(LoadVehicle, SuggestsNothingForAKeyThatResemblesNone) {
@@ -96,7 +96,7 @@ TEST(LoadVehicle, RefusesWhatIsNotOneMap) {
   expect_contains(error_for("---\n...\n"), ":1: is empty");
   expect_contains(error_for("- 1\n- 2\n"), ":1: the file holds a list of 2; expected a map with the keys radius");
   expect_contains(error_for("hello\n"), ":1: the file holds a string");
-  expect_contains(error_for(kValid + "---\n" + kValid), ":9: holds a second document");
+  expect_contains(error_for(kValidVehicle + "---\n" + kValidVehicle), ":9: holds a second document");
 }
 
 TEST(LoadVehicle, ReportsSyntaxErrorsWithTheirLine) {
@@ -123,8 +123,8 @@ TEST(LoadVehicle, SurvivesDeepNestingAndAliasBombs) {
 }
 
 TEST(LoadVehicle, AcceptsAnAliasInItsPlace) {
-  const TempFolder folder;
-  std::string text = kValid;
+  const Folder folder;
+  std::string text = kValidVehicle;
   text.replace(text.find("0.25"), 4, "&half 0.5");
   text.replace(text.find("length: 0.5"), 11, "length: *half");
   const planner::base::VehicleLimits v = load_vehicle(folder.write("v.yaml", text));
@@ -139,18 +139,18 @@ TEST(LoadVehicle, CutsLongValuesAndKeepsToOneLine) {
 }
 
 TEST(LoadVehicle, RefusesFilesThatCannotBeRead) {
-  const TempFolder folder;
+  const Folder folder;
   const auto missing = folder.path() / "none.yaml";
-  EXPECT_EQ(error_of([&] { load(missing); }), missing.string() + ": cannot read: No such file or directory");
-  expect_contains(error_of([&] { load(folder.path()); }), folder.path().string() + ": is a directory");
+  EXPECT_EQ(error_of([&] { try_vehicle(missing); }), missing.string() + ": cannot read: No such file or directory");
+  expect_contains(error_of([&] { try_vehicle(folder.path()); }), folder.path().string() + ": is a directory");
   const auto large = folder.write("large.yaml", std::string((std::size_t{16} << 20) + 1, '#'));
-  EXPECT_EQ(error_of([&] { load(large); }), large.string() + ": is larger than 16 MiB");
+  EXPECT_EQ(error_of([&] { try_vehicle(large); }), large.string() + ": is larger than 16 MiB");
 }
 
 TEST(LoadVehicle, AcceptsBothEndsOfLines) {
   std::string text;
-  for (const char c : kValid) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  const TempFolder folder;
+  for (const char c : kValidVehicle) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  const Folder folder;
   EXPECT_EQ(load_vehicle(folder.write("v.yaml", text)).max_climb, 0.75);
 }
 

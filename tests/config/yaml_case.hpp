@@ -3,48 +3,18 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace jink::config {
 
-/// A folder of its own below testing::TempDir(), removed with what is in it.
-class TempFolder {
- public:
-  TempFolder() {
-    static std::atomic<int> count{0};
-    // The process id keeps the cases apart that CTest runs side by side.
-    path_ = std::filesystem::path(testing::TempDir()) /
-            ("jink_config_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  ~TempFolder() {
-    std::error_code ignored;  // a destructor must not throw, and what is left lies in the temporary folder
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Writes a file, with the folders on the way to it.
-  std::filesystem::path write(const std::string& name, std::string_view text) const {
-    std::filesystem::path file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << text;
-    return file;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using support::Folder;
 
 /// The message of the ConfigError that `action` throws; fails the test if it throws none.
 template <class Action>
@@ -81,7 +51,7 @@ void expect_refused(const std::string& valid, const BadCase& bad, Load&& load) {
   ASSERT_EQ(valid.find(bad.from, at + 1), std::string::npos) << "the case is ambiguous";
   std::string text = valid;
   text.replace(at, bad.from.size(), bad.to);
-  const TempFolder folder;
+  const Folder folder;
   const std::filesystem::path file = folder.write("bad.yaml", text);
   const std::string error = error_of([&] { load(file); });
   const std::string start = file.string() + ":" + std::to_string(bad.line) + ": key '" + bad.key + "': ";

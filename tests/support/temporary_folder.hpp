@@ -2,9 +2,9 @@
 // A folder for a test's files, and what is in them.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -14,12 +14,13 @@
 
 namespace jink::support {
 
-/// A folder of its own for each test, gone afterwards.
+/// A folder of its own, gone afterwards.
 class Folder {
  public:
   Folder() {
-    const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    path_ = std::filesystem::temp_directory_path() / ("jink-tools-" + std::to_string(::getpid()) + "-" + test);
+    static std::atomic<int> count = 0;
+    const std::string name = "jink-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+    path_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::create_directories(path_);
   }
   ~Folder() { std::filesystem::remove_all(path_); }
@@ -32,6 +33,13 @@ class Folder {
   }
   [[nodiscard]] std::filesystem::path html() const { return path_ / "flight.html"; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Writes a file, with the folders on the way to it.
+  std::filesystem::path write(const std::string& name, std::string_view text) const {
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+  }
 
  private:
   std::filesystem::path path_;

@@ -10,18 +10,17 @@
 
 namespace jink::tools::log {
 
-using Json = nlohmann::ordered_json;
-
-Json vector_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
+nlohmann::ordered_json vector_json(const Vec3& v) {
+  return nlohmann::ordered_json::array({v.x(), v.y(), v.z()});
 }
 
-FlightLog::FlightLog(const std::filesystem::path& file, const Json& header, const FlightLogOptions& options)
+FlightLog::FlightLog(const std::filesystem::path& file, const nlohmann::ordered_json& header,
+                     const FlightLogOptions& options)
     : file_(file), options_(options), out_(file) {
   if (!out_) throw base::UsageError("--log: '" + file.string() + "' cannot be written");
-  Json first{{"type", "header"}, {"format", "jink-log/1"}, {"version", JINK_VERSION}};
+  nlohmann::ordered_json first{{"type", "header"}, {"format", "jink-log/1"}, {"version", JINK_VERSION}};
   first.update(header);
-  out_ << first.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  out_ << first.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
@@ -265,8 +264,8 @@ void FlightLog::write_content(double t, const Truth& truth) {
   }
 }
 
-Json parameters_of(const config::Settings& settings) {
-  Json parameters = Json::object();
+nlohmann::ordered_json parameters_of(const config::Settings& settings) {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
   for (const config::SettingText& setting : config::list_settings(settings)) parameters[setting.key] = setting.value;
   return parameters;
 }

@@ -10,7 +10,6 @@
 namespace jink::tools::log {
 namespace {
 
-using Json = nlohmann::json;
 using planner::base::TimedPath;
 using planner::verify::PlanStatus;
 
@@ -18,10 +17,6 @@ constexpr double kFastestSwing = 10.0;     // rad/s
 constexpr int kMostGenerations = 1000000;  // horizon.generations' own bound
 constexpr std::array<std::string_view, 8> kTypes = {"truth",    "obstacles", "state", "tracks",
                                                     "setpoint", "event",     "plan",  "header"};
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
-}
 
 Vec3 exact_vector(const Json& value, const char* key) {
   const auto v = exact_numbers<3>(value, key);

@@ -8,19 +8,17 @@
 namespace jink::tools::log {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr char kNoHeader[] = "the first line is not a jink-log/1 header";
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
-}
 
 std::string quoted(const char* key) {
   return std::string("\"") + key + "\"";
 }
 
 }  // namespace
+
+void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
 
 LogReader::LogReader(const std::filesystem::path& log) : file_(log), in_(log, std::ios::binary) {
   if (!in_) throw std::runtime_error(log.string() + ": cannot read the flight log");

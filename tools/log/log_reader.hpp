@@ -12,6 +12,8 @@
 
 namespace jink::tools::log {
 
+using Json = nlohmann::json;
+
 /// Reads records one by one; holds one line in memory. Lines without content are skipped.
 class LogReader {
  public:
@@ -19,10 +21,10 @@ class LogReader {
   /// ..." where it does not begin with a jink-log/1 header.
   explicit LogReader(const std::filesystem::path& log);
 
-  [[nodiscard]] const nlohmann::json& header() const { return header_; }
+  [[nodiscard]] const Json& header() const { return header_; }
   /// The next record, a JSON object; false at the end. Throws as above for a line that is none; but where the last
   /// line is not whole JSON its writer was killed, and the log ends before it.
-  bool next(nlohmann::json& record);
+  bool next(Json& record);
   /// Number of the line that next() gave, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
   /// Lines with content so far, the header and one that is cut off included.
@@ -40,7 +42,7 @@ class LogReader {
 
   std::filesystem::path file_;
   std::ifstream in_;
-  nlohmann::json header_;
+  Json header_;
   std::size_t read_ = 0;  // lines, empty ones too
   std::size_t line_ = 1;
   std::size_t lines_ = 0;
@@ -49,26 +51,28 @@ class LogReader {
 
 // Fields of a record. All throw std::invalid_argument that names the key, for LogReader::fail() to give its place.
 
+[[noreturn]] void refuse(const std::string& what);
+
 /// Null where a number belongs: the log's way to write one that is not finite.
 struct NotFinite {};
 
-const nlohmann::json& member(const nlohmann::json& record, const char* key);
+const Json& member(const Json& record, const char* key);
 /// A finite number; throws NotFinite for null.
-double number(const nlohmann::json& value, const char* key);
-double number_of(const nlohmann::json& record, const char* key);
+double number(const Json& value, const char* key);
+double number_of(const Json& record, const char* key);
 /// Any number: what is not finite is "inf", "-inf" or "nan".
-double exact(const nlohmann::json& value, const char* key);
-std::uint64_t count_of(const nlohmann::json& record, const char* key);
-std::string text_of(const nlohmann::json& record, const char* key);
+double exact(const Json& value, const char* key);
+std::uint64_t count_of(const Json& record, const char* key);
+std::string text_of(const Json& record, const char* key);
 /// False where it is missing.
-bool flag_of(const nlohmann::json& record, const char* key);
+bool flag_of(const Json& record, const char* key);
 /// A list of any length.
-const nlohmann::json& list_of(const nlohmann::json& record, const char* key);
+const Json& list_of(const Json& record, const char* key);
 /// Throws unless `value` is a list of `size` items.
-void check_list(const nlohmann::json& value, const char* key, std::size_t size);
+void check_list(const Json& value, const char* key, std::size_t size);
 
 template <std::size_t N>
-std::array<double, N> numbers(const nlohmann::json& value, const char* key) {
+std::array<double, N> numbers(const Json& value, const char* key) {
   check_list(value, key, N);
   std::array<double, N> result{};
   for (std::size_t i = 0; i < N; ++i) result[i] = number(value[i], key);
@@ -76,7 +80,7 @@ std::array<double, N> numbers(const nlohmann::json& value, const char* key) {
 }
 
 template <std::size_t N>
-std::array<double, N> exact_numbers(const nlohmann::json& value, const char* key) {
+std::array<double, N> exact_numbers(const Json& value, const char* key) {
   check_list(value, key, N);
   std::array<double, N> result{};
   for (std::size_t i = 0; i < N; ++i) result[i] = exact(value[i], key);

@@ -2,6 +2,7 @@
 // The parts of the flight's figure: views of the flight in space, and panels over time.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "tools/figures/figure.hpp"
@@ -11,6 +12,8 @@
 
 namespace jink::tools::report {
 
+/// A point that is not drawn: the line has a gap.
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMissing = 1.0;  ///< s without a sample, which a line leaves open
 
 /// A flight, and the instant of it that the figure shows.

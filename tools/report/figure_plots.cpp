@@ -19,7 +19,6 @@ using Samples = std::vector<std::array<double, 2>>;  // t, value
 
 constexpr double kCeiling = 6.0;    // m, clearance above which nothing is to be seen
 constexpr double kCharacter = 1.4;  // mm, of an average one of a note
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void add_curve(Panel& panel, const Samples& samples, std::string label, Kind kind, Look look) {
   if (samples.empty()) return;

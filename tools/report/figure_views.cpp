@@ -23,7 +23,6 @@ constexpr double kBeside = 3.5;      // m, beside it
 constexpr double kTrail = 2.0;       // s, of an obstacle's way before and after the instant
 constexpr double kAheadStep = 0.1;   // s
 constexpr double kMostExtent = 1e5;  // m; nothing that flies a log's length goes further
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 3> kAxes{"East (m)", "North (m)", "Up (m)"};
 
 std::string text_of(std::string_view text) {

@@ -42,7 +42,7 @@ std::vector<base::Track> wall(const std::vector<Hole>& holes, double speed = 0.0
   return tracks;
 }
 
-PathRequest request(const std::vector<base::Track>& tracks) {
+PathRequest before_the_wall(const std::vector<base::Track>& tracks) {
   PathRequest r;
   r.position = kStart;
   r.velocity = {3, 0, 0};
@@ -53,7 +53,7 @@ PathRequest request(const std::vector<base::Track>& tracks) {
 }
 
 std::vector<Gap> look(const std::vector<base::Track>& tracks, double t, std::size_t most) {
-  const PathRequest r = request(tracks);
+  const PathRequest r = before_the_wall(tracks);
   return find_gaps(r, geometry::PathFrame(r.position, r.target), kMiddle, t, kClearance, most);
 }
 
@@ -92,7 +92,7 @@ TEST(Openings, AreTheNearestFirstAndApart) {
   ASSERT_EQ(found.size(), 3U);
   EXPECT_GT(found[1].position.y(), 0.0);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_TRUE(request(tracks).volume.contains(found[i].position));
+    EXPECT_TRUE(before_the_wall(tracks).volume.contains(found[i].position));
     for (std::size_t j = 0; j < i; ++j) {
       EXPECT_GE((found[i].position - found[j].position).norm(), kGapSpacing);
     }
@@ -102,7 +102,7 @@ TEST(Openings, AreTheNearestFirstAndApart) {
 // 300 spheres and one way through: what a pilot tries first has one that only just needs mending.
 TEST(Openings, AreFlownThroughByAManoeuvre) {
   const std::vector<base::Track> tracks = wall({{2.6, 1.7}});
-  const PathRequest r = request(tracks);
+  const PathRequest r = before_the_wall(tracks);
   base::TimedPath unobstructed;
   for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
   const std::vector<double> times{1, 2, 3, 4, 5, 6};
@@ -123,7 +123,7 @@ TEST(Openings, AreFlownThroughByAManoeuvre) {
 // A target right behind the wall is where the ways through lead, not beyond it and out of the volume.
 TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
   const std::vector<base::Track> tracks = wall({{2.6, 1.7}});
-  PathRequest r = request(tracks);
+  PathRequest r = before_the_wall(tracks);
   r.target = {11, 0, 3};
   r.volume.max.x() = 11.5;
   PathProblem problem{base::HorizonSettings{}};
@@ -144,7 +144,7 @@ TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
 
 TEST(Openings, AreWhereTheWayLeadsOn) {
   const auto on = [](const std::vector<base::Track>& tracks) {
-    const PathRequest r = request(tracks);
+    const PathRequest r = before_the_wall(tracks);
     base::TimedPath unobstructed;
     for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
     return gap_ahead(r, unobstructed, 6.0, kClearance);
@@ -159,7 +159,7 @@ TEST(Openings, AreWhereTheWayLeadsOn) {
 // To wait for a wall to go away is for ever cheaper than the way to a hole far aside, until waiting has not helped.
 TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   const std::vector<base::Track> tracks = wall({{1.8, 4.5}});
-  PathRequest r = request(tracks);
+  PathRequest r = before_the_wall(tracks);
   r.position = {5, -2, 1.5};
   r.velocity = Vec3::Zero();
   r.target = {11, -2, 1.5};

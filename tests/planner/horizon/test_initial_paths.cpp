@@ -12,10 +12,10 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kClearance = 0.4;
+constexpr double kPathClearance = 0.4;
 const std::vector<double> kTimes{1, 2, 3, 4, 5, 6};
 
-PathRequest request(const std::vector<base::Track>& tracks) {
+PathRequest straight_on(const std::vector<base::Track>& tracks) {
   PathRequest r;
   r.position = {0, 0, 5};
   r.velocity = {3, 0, 0};
@@ -57,14 +57,14 @@ std::size_t ways_through(const std::vector<base::TimedPath>& paths, const std::v
 
 TEST(Manoeuvres, HavePointsAtTheTimesAskedFor) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 3.0, {0, 2, 0})};
-  for (const base::TimedPath& path : initial_paths(request(tracks), cruise(), kTimes, kClearance)) {
+  for (const base::TimedPath& path : initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance)) {
     ASSERT_EQ(path.size(), kTimes.size());
     for (std::size_t k = 0; k < path.size(); ++k) EXPECT_EQ(path[k].t, kTimes[k]);
   }
 }
 
 TEST(Manoeuvres, WaitSlowDownHurryAndStop) {
-  const auto paths = initial_paths(request({}), cruise(), kTimes, kClearance);
+  const auto paths = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
   EXPECT_TRUE(contains(paths, 6.0, {12, 0, 5}));        // two seconds late
   EXPECT_TRUE(contains(paths, 6.0, {0.8 * 18, 0, 5}));  // at 80 %
   EXPECT_TRUE(contains(paths, 3.0, {1.3 * 9, 0, 5}));
@@ -72,7 +72,7 @@ TEST(Manoeuvres, WaitSlowDownHurryAndStop) {
 }
 
 TEST(Manoeuvres, GoAsideInFourDirectionsAndReturn) {
-  const auto paths = initial_paths(request({}), cruise(), kTimes, kClearance);
+  const auto paths = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
   for (const Vec3& side : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     EXPECT_TRUE(contains(paths, 2.0, Vec3(6, 0, 5) + 1.5 * side));
   }
@@ -84,8 +84,8 @@ TEST(Manoeuvres, GoAsideInFourDirectionsAndReturn) {
 // under.
 TEST(Manoeuvres, LeadPastACrossingObstacleInRelativeMotion) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 3.0, {0, 3, 0})};
-  const double wanted = 0.5 + base::VehicleLimits{}.radius + kClearance;
-  const auto paths = initial_paths(request(tracks), cruise(), kTimes, kClearance);
+  const double wanted = 0.5 + base::VehicleLimits{}.radius + kPathClearance;
+  const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
   const double s = wanted / std::sqrt(2.0);
   EXPECT_TRUE(contains(paths, 3.0, {9 - s, -s, 5}));
   EXPECT_TRUE(contains(paths, 3.0, {9 + s, s, 5}));
@@ -104,8 +104,8 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
     const Vec3 miss{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
     const std::vector<base::Track> tracks{mover(Vec3(3 * when, 0, 5) + miss, when, velocity)};
     const Vec3 closing = Vec3(3, 0, 0) - velocity;
-    const auto paths = initial_paths(request(tracks), cruise(), kTimes, kClearance);
-    const auto without = initial_paths(request({}), cruise(), kTimes, kClearance);
+    const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
+    const auto without = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
     if (paths.size() == without.size()) continue;
     ++met;
     const std::size_t through = ways_through(paths, without, 1);
@@ -114,7 +114,7 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
     for (std::size_t i = 0; i < 4; ++i) {
       const Vec3 apart = base::sample(paths[through + i], t).position - (tracks[0].position + t * velocity);
       const double distance = (apart - apart.dot(closing) / closing.squaredNorm() * closing).norm();
-      EXPECT_NEAR(distance, 0.5 + base::VehicleLimits{}.radius + kClearance, 0.02);
+      EXPECT_NEAR(distance, 0.5 + base::VehicleLimits{}.radius + kPathClearance, 0.02);
     }
   }
   EXPECT_GT(met, 400);
@@ -123,9 +123,9 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
 // One that hangs in the way at x = 9: the last point is short of it by what is wanted, and it is come to gently.
 TEST(Manoeuvres, StopShortOfAnObstacle) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 0.0, {0, 0, 0})};
-  const double wanted = 0.5 + base::VehicleLimits{}.radius + kClearance;
-  const auto paths = initial_paths(request(tracks), cruise(), kTimes, kClearance);
-  const auto without = initial_paths(request({}), cruise(), kTimes, kClearance);
+  const double wanted = 0.5 + base::VehicleLimits{}.radius + kPathClearance;
+  const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
+  const auto without = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
   const base::TimedPath& stop = paths[ways_through(paths, without, 1) + 4];
   EXPECT_NEAR(stop.back().position.x(), 9.0 - wanted, 0.05);
   for (std::size_t k = 1; k < stop.size(); ++k) {
@@ -138,8 +138,8 @@ TEST(Manoeuvres, StopShortOfAnObstacle) {
 TEST(Manoeuvres, LookAtTheFirstThreeEncounters) {
   std::vector<base::Track> tracks;
   for (const double when : {5.0, 2.0, 4.0, 1.0, 3.0}) tracks.push_back(mover({3 * when, 0, 5}, when, {0, 0, 0}));
-  const auto all = initial_paths(request(tracks), cruise(), kTimes, kClearance);
-  const auto none = initial_paths(request({}), cruise(), kTimes, kClearance);
+  const auto all = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
+  const auto none = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
   const base::TimedPath& third = all[ways_through(all, none, 3) + 10];
   EXPECT_GT(std::abs(third.at(2).position.y()) + std::abs(third.at(2).position.z() - 5.0), 0.5);  // the one at 3 s
 }

@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/fronts.hpp"
 
 namespace jink::planner::optimizer {
 namespace {
 
-Cost cost(double f1, double f2, double violation = 0.0) {
-  return {{f1, f2, 0.0}, violation};
-}
+using testing_support::cost;
 
 bool add(Archive& archive, const Cost& c, base::RandomStream& random) {
   return archive.add(std::array{c.f[0], c.f[1]}, c, random);

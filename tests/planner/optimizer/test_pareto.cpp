@@ -9,13 +9,12 @@
 #include <numeric>
 
 #include "planner/base/random.hpp"
+#include "tests/support/fronts.hpp"
 
 namespace jink::planner::optimizer {
 namespace {
 
-Cost cost(double f1, double f2, double violation = 0.0) {
-  return {{f1, f2, 0.0}, violation};
-}
+using testing_support::cost;
 
 TEST(Dominates, NeedsNoWorseEverywhereAndBetterSomewhere) {
   EXPECT_TRUE(dominates(cost(1, 1), cost(2, 2), 2));

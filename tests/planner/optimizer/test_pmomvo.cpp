@@ -9,33 +9,20 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/planner/optimizer/fronts.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/fronts.hpp"
 
 namespace jink::planner::optimizer {
 namespace {
 
-class Zdt1 final : public Problem {
- public:
-  [[nodiscard]] int dimension() const override { return kDimension; }
-  [[nodiscard]] int objectives() const override { return 2; }
-  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
-  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
-  void evaluate(std::span<const double> x, std::span<Cost> costs) const override {
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      double sum = 0.0;
-      for (std::size_t j = 1; j < kDimension; ++j) sum += x[i * kDimension + j];
-      const double f1 = x[i * kDimension];
-      const double g = 1.0 + 9.0 * sum / (kDimension - 1);
-      costs[i] = {{f1, g * (1.0 - std::sqrt(f1 / g)), 0.0}, 0.0};
-    }
-  }
-  static constexpr int kDimension = 5;
+using testing_support::volume_of;
+using testing_support::Zdt;
 
- private:
-  std::vector<double> lower_ = std::vector<double>(kDimension, 0.0);
-  std::vector<double> upper_ = std::vector<double>(kDimension, 1.0);
-};
+constexpr int kDimension = 5;
+
+Zdt zdt1() {
+  return Zdt(1, kDimension);
+}
 
 base::OptimizerSettings settings(int slaves, int sharing, int population = 50) {
   base::OptimizerSettings s;
@@ -47,9 +34,9 @@ base::OptimizerSettings settings(int slaves, int sharing, int population = 50) {
 
 /// A copy of the front of a new optimizer's run.
 Front solve(const base::OptimizerSettings& s, int generations, int threads, std::span<const double> initial = {}) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(threads);
-  Pmomvo optimizer(s, Zdt1::kDimension, 2);
+  Pmomvo optimizer(s, kDimension, 2);
   return optimizer.run(problem, initial, 11, 3, {generations, base::Budget::Time::max()}, pool);
 }
 
@@ -64,7 +51,7 @@ void expect_front(const Front& front) {
   ASSERT_EQ(front.x.size(), front.size() * static_cast<std::size_t>(front.dimension));
   for (std::size_t i = 0; i < front.size(); ++i) {
     Cost again;
-    Zdt1().evaluate(front.solution(i), {&again, 1});
+    zdt1().evaluate(front.solution(i), {&again, 1});
     EXPECT_EQ(again.f, front.costs[i].f);  // costs[i] belongs to solution(i)
     for (std::size_t j = 0; j < front.size(); ++j) {
       EXPECT_FALSE(dominates(front.costs[i], front.costs[j], 2));
@@ -75,15 +62,15 @@ void expect_front(const Front& front) {
 
 // The true front has 0.8767; the least over 60 seeds is 0.856 (6 slaves).
 TEST(Pmomvo, ConvergesOnZdt1) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(2);
   for (const auto& [slaves, sharing] : {std::pair{2, 3}, std::pair{4, 9}, std::pair{6, 9}}) {
-    Pmomvo optimizer(settings(slaves, sharing), Zdt1::kDimension, 2);
+    Pmomvo optimizer(settings(slaves, sharing), kDimension, 2);
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Front& front = optimizer.run(problem, {}, seed, 0, {}, pool);
       expect_front(front);
-      EXPECT_GT(testing::volume_of(front.costs), 0.84) << slaves << " slaves, seed " << seed;
-      EXPECT_LT(testing::volume_of(front.costs), 0.8767);
+      EXPECT_GT(volume_of(front.costs), 0.84) << slaves << " slaves, seed " << seed;
+      EXPECT_LT(volume_of(front.costs), 0.8767);
     }
   }
 }
@@ -97,9 +84,9 @@ TEST(Pmomvo, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Pmomvo, SeedAndStreamNameTheRandomNumbers) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(1);
-  Pmomvo optimizer(settings(2, 1), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(2, 1), kDimension, 2);
   const auto solution = [&](std::uint64_t seed, std::uint64_t stream) {
     return optimizer.run(problem, {}, seed, stream, {5, base::Budget::Time::max()}, pool).x;
   };
@@ -111,8 +98,8 @@ TEST(Pmomvo, SeedAndStreamNameTheRandomNumbers) {
 
 TEST(Pmomvo, OneSlaveWithoutSharingIsMomvoAlone) {
   const Front front = solve(settings(1, 0), 40, 2);
-  const Zdt1 problem;
-  Momvo momvo(50, Zdt1::kDimension, 2, settings(1, 0));
+  const Zdt problem = zdt1();
+  Momvo momvo(50, kDimension, 2, settings(1, 0));
   momvo.reset(problem, base::RandomStream(11, 3, 0));
   for (int i = 0; i < 40; ++i) momvo.iterate((i + 1) / 40.0);
   ASSERT_EQ(front.size(), momvo.archive().size());
@@ -128,9 +115,9 @@ TEST(Pmomvo, SharingHasAnEffect) {
 }
 
 TEST(Pmomvo, DealsAllUniversesOut) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(1);
-  Pmomvo optimizer(settings(6, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(6, 3), kDimension, 2);
   optimizer.run(problem, {}, 1, 0, {20, base::Budget::Time::max()}, pool);
   EXPECT_EQ(optimizer.report().generations, 20);
   EXPECT_EQ(optimizer.report().evaluations, 20 * 50);
@@ -138,7 +125,7 @@ TEST(Pmomvo, DealsAllUniversesOut) {
 }
 
 TEST(Pmomvo, RefusesSettingsThatCannotWork) {
-  const auto make = [](const base::OptimizerSettings& s) { Pmomvo(s, Zdt1::kDimension, 2); };
+  const auto make = [](const base::OptimizerSettings& s) { Pmomvo(s, kDimension, 2); };
   EXPECT_THROW(make(settings(0, 0)), std::invalid_argument);
   EXPECT_THROW(make(settings(6, 0, 5)), std::invalid_argument);  // more slaves than universes
   EXPECT_THROW(make(settings(2, -1)), std::invalid_argument);
@@ -153,9 +140,9 @@ TEST(Pmomvo, RefusesSettingsThatCannotWork) {
 
 // Ten cycles, three iterations: the first cycles are empty, and there is nothing yet to share.
 TEST(Pmomvo, WorksWithMoreCyclesThanIterations) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(2);
-  Pmomvo optimizer(settings(3, 9), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(3, 9), kDimension, 2);
   for (const int generations : {1, 3, 9, 10, 11}) {
     expect_front(optimizer.run(problem, {}, 1, 0, {generations, base::Budget::Time::max()}, pool));
     EXPECT_EQ(optimizer.report().generations, generations);
@@ -163,9 +150,9 @@ TEST(Pmomvo, WorksWithMoreCyclesThanIterations) {
 }
 
 TEST(Pmomvo, ExpiredDeadlineStillGivesTheFirstGeneration) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(2);
-  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(4, 3), kDimension, 2);
   const Front& front = optimizer.run(problem, {}, 1, 0, {40, base::Budget::Time::min()}, pool);
   expect_front(front);
   EXPECT_TRUE(optimizer.report().deadline_reached);
@@ -175,9 +162,9 @@ TEST(Pmomvo, ExpiredDeadlineStillGivesTheFirstGeneration) {
 
 // The master that looks at the clock after every generation gives the same bits as the one that does not.
 TEST(Pmomvo, ADeadlineThatIsFarAwayChangesNothing) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(2);
-  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(4, 3), kDimension, 2);
   const auto far = std::chrono::steady_clock::now() + std::chrono::hours(1);
   const Front with = optimizer.run(problem, {}, 1, 0, {40, far}, pool);
   EXPECT_FALSE(optimizer.report().deadline_reached);
@@ -185,9 +172,9 @@ TEST(Pmomvo, ADeadlineThatIsFarAwayChangesNothing) {
 }
 
 TEST(Pmomvo, StopsAfterAnyGeneration) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(2);
-  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(4, 3), kDimension, 2);
   for (const int stop : {1, 7, 10, 39, 40, 100}) {
     expect_front(optimizer.run(problem, {}, 1, 0, {40, base::Budget::Time::max(), stop}, pool));
     EXPECT_EQ(optimizer.report().generations, std::min(stop, 40));
@@ -196,9 +183,9 @@ TEST(Pmomvo, StopsAfterAnyGeneration) {
 
 // Budget: the same schedule, stopped after the generations that the stopped run reports, repeats it.
 TEST(Pmomvo, RunStoppedByDeadlineIsRepeatedByItsGenerations) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(1);
-  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(4, 3), kDimension, 2);
   const Front stopped = optimizer.run(problem, {}, 1, 0, {40, base::Budget::Time::min()}, pool);
   const int generations = optimizer.report().generations;
   expect_same(stopped, optimizer.run(problem, {}, 1, 0, {40, base::Budget::Time::max(), generations}, pool));
@@ -206,9 +193,9 @@ TEST(Pmomvo, RunStoppedByDeadlineIsRepeatedByItsGenerations) {
 }
 
 TEST(Pmomvo, RefusesABudgetWithoutGenerations) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   base::WorkerPool pool(1);
-  Pmomvo optimizer(settings(4, 3), Zdt1::kDimension, 2);
+  Pmomvo optimizer(settings(4, 3), kDimension, 2);
   EXPECT_THROW(optimizer.run(problem, {}, 1, 0, {0}, pool), std::invalid_argument);
 }
 
@@ -217,7 +204,7 @@ TEST(Pmomvo, InitialSolutionsAppear) {
   std::vector<double> initial;
   for (const double f1 : {0.0, 0.01, 0.25, 0.49, 1.0}) {
     initial.push_back(f1);
-    initial.insert(initial.end(), Zdt1::kDimension - 1, 0.0);
+    initial.insert(initial.end(), kDimension - 1, 0.0);
   }
   const Front front = solve(settings(2, 1), 4, 1, initial);
   for (const double f1 : {0.0, 0.01, 0.25, 0.49, 1.0}) {
@@ -226,16 +213,16 @@ TEST(Pmomvo, InitialSolutionsAppear) {
 }
 
 TEST(Pmomvo, TakesMoreInitialSolutionsThanUniverses) {
-  const std::vector<double> initial(30 * Zdt1::kDimension, 0.5);
+  const std::vector<double> initial(30 * kDimension, 0.5);
   expect_front(solve(settings(3, 2, 10), 10, 2, initial));
 }
 
 TEST(Pmomvo, SecondRunAllocatesNothing) {
-  const Zdt1 problem;
+  const Zdt problem = zdt1();
   for (const int threads : {1, 3}) {
     base::WorkerPool pool(threads);
-    Pmomvo optimizer(settings(4, 5), Zdt1::kDimension, 2);
-    const std::vector<double> initial(3 * Zdt1::kDimension, 0.5);
+    Pmomvo optimizer(settings(4, 5), kDimension, 2);
+    const std::vector<double> initial(3 * kDimension, 0.5);
     const base::Budget budget{30, base::Budget::Time::max()};
     const std::size_t size = optimizer.run(problem, initial, 1, 0, budget, pool).size();
     const test::AllocationGuard guard;

@@ -8,13 +8,12 @@
 #include <cmath>
 
 #include "planner/base/random.hpp"
+#include "tests/support/fronts.hpp"
 
 namespace jink::planner::optimizer {
 namespace {
 
-Cost cost(double f1, double f2, double violation = 0.0) {
-  return {{f1, f2, 0.0}, violation};
-}
+using testing_support::cost;
 
 // Column 1, shifted: 0 1 3, sum 4: p = 0, 1/4, 3/4; entropy = ln 4 /4 + (3/4) ln(4/3) = 0.562335; over ln 3: 0.511860;
 // divergence 0.488140. Column 2, shifted: 2 2 0: p = 1/2, 1/2, 0; entropy ln 2 = 0.693147; over ln 3: 0.630930;

@@ -12,30 +12,29 @@
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
+namespace jink::sim::dds {
 namespace {
 
-using jink::Vec3;
-using jink::bridge::dds::DdsParticipant;
-using jink::bridge::dds::DdsVehicleLink;
-using jink::bridge::dds::Payload;
-using jink::bridge::dds::PayloadWriter;
-using jink::bridge::testing::eventually;
-using jink::bridge::testing::ManualClock;
-using jink::bridge::testing::own_domain;
-using jink::bridge::vehicle::Setpoint;
-using jink::bridge::vehicle::VehicleState;
-using jink::sim::dds::VehicleTopics;
-using jink::sim::vehicle::Autopilot;
+using bridge::dds::DdsParticipant;
+using bridge::dds::DdsVehicleLink;
+using bridge::dds::Payload;
+using bridge::dds::PayloadWriter;
+using bridge::testing::eventually;
+using bridge::testing::ManualClock;
+using bridge::testing::own_domain;
+using bridge::vehicle::Setpoint;
+using bridge::vehicle::VehicleState;
+using vehicle::Autopilot;
 
 TEST(EstimateJumpDetector, TellsAJumpFromMotion) {
-  jink::sim::dds::EstimateJumpDetector watch;
-  jink::sim::vehicle::Motion motion;
+  EstimateJumpDetector watch;
+  vehicle::Motion motion;
   motion.velocity = {2.0, 0.0, 0.0};
   EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
   motion.position = {0.2, 0.0, 0.0};
   EXPECT_EQ(watch.update(255, motion, 0.1).newest, Vec3::Zero());
   motion.position = {3.4, 0.0, -1.0};  // 0.2 m flown, 3 m jumped
-  const jink::sim::dds::EstimateJumps jumps = watch.update(0, motion, 0.1);
+  const EstimateJumps jumps = watch.update(0, motion, 0.1);
   EXPECT_EQ(jumps.horizontal, 0);
   EXPECT_EQ(jumps.vertical, 0);
   EXPECT_LT((jumps.newest - Vec3(3.0, 0.0, -1.0)).norm(), 1e-12);
@@ -43,16 +42,16 @@ TEST(EstimateJumpDetector, TellsAJumpFromMotion) {
   EXPECT_EQ(watch.update(0, motion, 0.1).newest, jumps.newest);
 }
 
-class NoLink final : public jink::bridge::vehicle::VehicleLink {
+class NoLink final : public bridge::vehicle::VehicleLink {
  public:
   VehicleState state() override { return {}; }
   bool send(const Setpoint& /*setpoint*/) override { return false; }
-  void request(jink::bridge::vehicle::Command /*command*/) override {}
-  std::optional<jink::bridge::vehicle::CommandReport> next_report() override { return std::nullopt; }
+  void request(bridge::vehicle::Command /*command*/) override {}
+  std::optional<bridge::vehicle::CommandReport> next_report() override { return std::nullopt; }
 };
 
-jink::sim::vehicle::AutopilotOptions airborne() {
-  jink::sim::vehicle::AutopilotOptions options;
+vehicle::AutopilotOptions airborne() {
+  vehicle::AutopilotOptions options;
   options.position = {1.0, 2.0, 3.0};
   options.airborne = true;
   options.ready_delay = 0.0;
@@ -62,7 +61,7 @@ jink::sim::vehicle::AutopilotOptions airborne() {
 class SimulatedDds : public ::testing::Test {
  protected:
   // One step of the simulator: 4 ms.
-  void step(const jink::sim::dds::EstimateJumps& jumps = {}) {
+  void step(const EstimateJumps& jumps = {}) {
     dds_.step(autopilot_.time(), autopilot_, jumps);
     autopilot_.step();
   }
@@ -93,7 +92,7 @@ TEST_F(SimulatedDds, FliesOnDdsAlone) {
   EXPECT_EQ(s.estimate_resets, 0U);
   const Setpoint setpoint{.position = {2, 2, 3}, .yaw = airborne().yaw};
   ASSERT_TRUE(step_until([&] { return link.send(setpoint) && dds_.setpoints() > 0; }));
-  ASSERT_EQ(autopilot_.set_mode(6), jink::sim::vehicle::Result::kAccepted);
+  ASSERT_EQ(autopilot_.set_mode(6), vehicle::Result::kAccepted);
   EXPECT_TRUE(step_until([&] {
     return link.send(setpoint) && (link.state().motion.value.position - Vec3(2, 2, 3)).norm() < 0.1;
   })) << link.state().motion.value.position.transpose();
@@ -103,15 +102,14 @@ TEST_F(SimulatedDds, FliesOnDdsAlone) {
 TEST_F(SimulatedDds, TellsOfJumps) {
   DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = false, .name_space = "px4_3"});
   ASSERT_TRUE(step_until([&] { return link.state().local_position_ok; }));
-  const jink::sim::dds::EstimateJumps jumps{.horizontal = 1, .vertical = 0, .newest = {3.0, -1.0, 0.0}};
+  const EstimateJumps jumps{.horizontal = 1, .vertical = 0, .newest = {3.0, -1.0, 0.0}};
   ASSERT_TRUE(eventually([&] { return step(jumps), link.state().estimate_resets == 1; }));
   EXPECT_EQ(link.state().estimate_shift, Vec3(3.0, -1.0, 0.0));
 }
 
 TEST_F(SimulatedDds, TakesNoSetpointWithoutAControlMode) {
-  PayloadWriter setpoints(companion_, "rt/px4_3/fmu/in/trajectory_setpoint",
-                          jink::bridge::dds::kTrajectorySetpointType);
-  PayloadWriter modes(companion_, "rt/px4_3/fmu/in/offboard_control_mode", jink::bridge::dds::kOffboardControlModeType);
+  PayloadWriter setpoints(companion_, "rt/px4_3/fmu/in/trajectory_setpoint", bridge::dds::kTrajectorySetpointType);
+  PayloadWriter modes(companion_, "rt/px4_3/fmu/in/offboard_control_mode", bridge::dds::kOffboardControlModeType);
   ASSERT_TRUE(step_until([&] { return setpoints.readers() == 1 && modes.readers() == 1; }));
   ASSERT_TRUE(setpoints.write(Payload{0, 1, 0, 0, 5}));
   ASSERT_TRUE(step_until([&] { return dds_.malformed() == 1; }));  // so the next ones come too
@@ -128,3 +126,4 @@ TEST_F(SimulatedDds, TakesNoSetpointWithoutAControlMode) {
 }
 
 }  // namespace
+}  // namespace jink::sim::dds

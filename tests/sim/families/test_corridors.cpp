@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::uint64_t kSeeds = 20;
+constexpr std::uint64_t kCorridors = 20;
 
 const config::LinearMotion& linear(const config::Obstacle& obstacle) {
   return std::get<config::LinearMotion>(obstacle.motion);
@@ -60,7 +60,7 @@ void expect_limits_of_the_literature(const config::Scenario& scenario) {
 
 TEST(MaderCorridor, IsAsPublished) {
   for (const std::size_t count : {50U, 100U, 250U}) {
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= kCorridors; ++seed) {
       const config::Scenario scenario = make_world("mader_" + std::to_string(count), seed);
       SCOPED_TRACE(scenario.name);
       expect_cubes(scenario, count, {{2, -3, 1}, {75, 3, 2}});
@@ -125,7 +125,7 @@ TEST(MaderCorridor, TheRestSwingInHeight) {
 
 TEST(SandoCorridor, IsAsTheBenchmark) {
   for (const std::size_t count : {50U, 100U, 200U}) {
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= kCorridors; ++seed) {
       const config::Scenario scenario = make_world("sando_" + std::to_string(count), seed);
       SCOPED_TRACE(scenario.name);
       expect_cubes(scenario, count, {{5, -6, 0.5}, {100, 6, 4.5}});
@@ -221,7 +221,7 @@ TEST(Antipodal, VehiclesFaceEachOtherAcrossACircleOrASphere) {
 
 // Each at the same speed along its own line: in the middle at the same time.
 TEST(Antipodal, StraightFlightsMeetInTheMiddle) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCorridors; ++seed) {
     const config::Scenario scenario = make_world("antipodal", seed);
     const auto team = config::all_vehicles(scenario);
     for (std::size_t k = 1; k < team.size(); ++k) {
@@ -236,7 +236,7 @@ TEST(Late, HoldsStandingOncomingAndCrossingOnes) {
   int standing = 0;
   int oncoming = 0;
   int crossing = 0;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kCorridors; ++seed) {
     const config::Scenario scenario = make_world("late", seed);
     const Vec3 forward = (scenario.target - scenario.start).normalized();
     for (const config::Obstacle& obstacle : scenario.obstacles) {

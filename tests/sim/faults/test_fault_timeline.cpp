@@ -10,6 +10,7 @@
 
 #include "sim/faults/impairment.hpp"
 #include "sim/faults/vehicle_faults.hpp"
+#include "tests/sim/examples.hpp"
 
 namespace jink::sim::faults {
 namespace {
@@ -17,14 +18,6 @@ namespace {
 using config::Fault;
 using config::FaultKind;
 using config::LinkDirection;
-
-Fault fault(FaultKind kind, double at, std::optional<double> duration = std::nullopt) {
-  Fault f;
-  f.kind = kind;
-  f.at = at;
-  f.duration = duration;
-  return f;
-}
 
 std::vector<std::string> texts(FaultTimeline& timeline, double t) {
   std::vector<std::string> all;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/families/families.hpp"
+#include "tests/sim/examples.hpp"
 #include "tests/support/repetitions.hpp"
 
 namespace jink::sim::flight {
@@ -41,10 +42,6 @@ config::Scenario straight() {
   scenario.target = {6, 0, 1.5};
   scenario.time_limit = 20.0;
   return scenario;
-}
-
-config::Obstacle ball(double radius, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
-  return {config::SphereShape{radius}, config::LinearMotion{position, velocity, Vec3::Zero()}};
 }
 
 /// FNV-1a over the bits of everything that is said in a flight.
@@ -260,14 +257,6 @@ TEST(ClosedLoop, WaitsClearOfATargetThatStaysBlocked) {
     EXPECT_GT(flown.result.min_clearance, 0.0);
     EXPECT_GT(flown.result.flight.path_length, 5.0);  // it goes there to wait
   }
-}
-
-config::Fault fault(config::FaultKind kind, double at, std::optional<double> duration = std::nullopt) {
-  config::Fault f;
-  f.kind = kind;
-  f.at = at;
-  f.duration = duration;
-  return f;
 }
 
 /// A bit of everything that leaves the flight possible, in the default scenario.

@@ -12,7 +12,7 @@
 namespace jink::sim::flight {
 namespace {
 
-const std::filesystem::path kConfig = std::filesystem::path(JINK_SOURCE_DIR) / "config";
+const std::filesystem::path kShipped = std::filesystem::path(JINK_SOURCE_DIR) / "config";
 
 /// Hands no plan out within [from, until): what is ready then comes at its end, as from a thread
 /// that got no time.
@@ -45,7 +45,7 @@ config::Scenario blocked_line() {
 }
 
 config::Settings settings() {
-  return config::load_settings(kConfig / "planner.yaml", {"horizon.generations=4"});
+  return config::load_settings(kShipped / "planner.yaml", {"horizon.generations=4"});
 }
 
 ClosedLoopResult fly_with_stall(double from, double until) {

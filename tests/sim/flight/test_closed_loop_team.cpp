@@ -12,7 +12,7 @@
 namespace jink::sim::flight {
 namespace {
 
-config::Settings quick_settings() {
+config::Settings team_settings() {
   config::Settings settings;
   settings.horizon.generations = 8;
   return settings;
@@ -58,7 +58,7 @@ ClosedLoopResult fly(const config::Scenario& scenario, Watch& watch, int threads
   options.threads = threads;
   options.flight_observers = {&watch};
   options.truth_observers = {&watch};
-  return fly_closed_loop(scenario, quick_settings(), options);
+  return fly_closed_loop(scenario, team_settings(), options);
 }
 
 TEST(ClosedLoopTeam, TwoSwapPlacesAndAreJudgedTogether) {

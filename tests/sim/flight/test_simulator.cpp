@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/sim/examples.hpp"
 #include "tests/sim/mavlink/loopback_companion.hpp"
 
 namespace jink::sim::flight {
@@ -23,10 +24,6 @@ config::Scenario two_vehicles() {
   scenario.target = {6, 0, 1.5};
   scenario.vehicles.push_back({{0, 3, 1.5}, {6, 3, 1.5}, "inline", scenario.vehicle});
   return scenario;
-}
-
-config::Obstacle ball(double radius, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
-  return {config::SphereShape{radius}, config::LinearMotion{position, velocity, Vec3::Zero()}};
 }
 
 /// What the simulator says, and a companion for each vehicle.
@@ -197,14 +194,6 @@ TEST(Simulator, WithoutVehiclesTheObstaclesMoveAtOnce) {
   EXPECT_TRUE(simulator.reports().empty());
   ASSERT_FALSE(messages.empty());
   EXPECT_NEAR(messages.back().tracks.at(0).position.y(), -7.0, 1e-9);
-}
-
-config::Fault fault(config::FaultKind kind, double at, std::optional<double> duration = std::nullopt) {
-  config::Fault f;
-  f.kind = kind;
-  f.at = at;
-  f.duration = duration;
-  return f;
 }
 
 /// How many messages came to each companion in `seconds`.

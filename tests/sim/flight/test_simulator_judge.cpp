@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/sim/examples.hpp"
+
 namespace jink::sim::flight {
 namespace {
 
@@ -24,10 +26,6 @@ world::World world_with(std::vector<config::Obstacle> obstacles,
   scenario.obstacles = std::move(obstacles);
   scenario.world = std::move(volume);
   return world::World(std::move(scenario));
-}
-
-config::Obstacle ball(double radius, const Vec3& position) {
-  return {config::SphereShape{radius}, config::LinearMotion{position, Vec3::Zero(), Vec3::Zero()}};
 }
 
 JudgedVehicle at(const Vec3& position, bool offboard = true) {

@@ -233,12 +233,12 @@ void expect_same(const char* what, const std::vector<Timed<Value>>& px4, const s
 void expect_same_events(const Story& px4, const Story& simulator) {
   constexpr std::uint32_t kTakeoffDetected = 0x01414569;
   constexpr std::uint32_t kLandingDetected = 0x019638AC;
-  constexpr std::uint32_t kDisarmed = 0x01F46777;
+  constexpr std::uint32_t kDisarmedEvent = 0x01F46777;
   ASSERT_GT(px4.events.size(), 15U);
   ASSERT_EQ(px4.events.size(), simulator.events.size());
   for (std::size_t i = 0; i < px4.events.size(); ++i) {
     const Event& event = px4.events[i].value;
-    const bool moves = event.id == kTakeoffDetected || event.id == kLandingDetected || event.id == kDisarmed;
+    const bool moves = event.id == kTakeoffDetected || event.id == kLandingDetected || event.id == kDisarmedEvent;
     EXPECT_TRUE(event == simulator.events[i].value)
         << "event number " << i << std::hex << ": " << event.id << " and " << simulator.events[i].value.id;
     EXPECT_NEAR(px4.events[i].t, simulator.events[i].t, moves ? kLandedStateTolerance : kEventTolerance)

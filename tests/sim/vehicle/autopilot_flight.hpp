@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 
 namespace jink::sim::vehicle {
 
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kSetpointInterval = 0.02;
 
 inline Setpoint position_setpoint(const Vec3& position) {

@@ -9,8 +9,6 @@
 namespace jink::sim::vehicle {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// In the air, and in OFFBOARD there for 2 s.
 class OffboardFlight : public Flight {
  public:

@@ -13,7 +13,6 @@ namespace jink::sim::vehicle {
 namespace {
 
 constexpr double kTimeout = 5.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean and standard deviation of numbers that come one by one.
 struct Statistics {

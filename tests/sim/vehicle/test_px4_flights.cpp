@@ -17,21 +17,21 @@
 
 #include "sim/vehicle/estimator.hpp"
 #include "sim/vehicle/vehicle_model.hpp"
+#include "tests/sim/vehicle/autopilot_flight.hpp"
 
 namespace jink::sim::vehicle {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPeriod = 0.02;      // s, between samples
 constexpr double kTakeoffTime = 4.5;  // s from the first setpoint: PX4's ramp is another matter
 constexpr double kLandingHeight = 0.35;
 constexpr int kSeeds = 20;
 
-struct Sample {
+struct Recorded {
   double t = 0.0;
   std::array<double, 9> values{};  ///< position, velocity, acceleration; for `attitude` roll, pitch, yaw (FRD in NED)
 };
-using Recording = std::map<std::string, std::vector<Sample>>;
+using Recording = std::map<std::string, std::vector<Recorded>>;
 
 Recording read_recording(const std::string& name) {
   const std::string path = JINK_SOURCE_DIR "/tests/sim/vehicle/data/" + name + ".csv.gz";
@@ -44,7 +44,7 @@ Recording read_recording(const std::string& name) {
     std::istringstream fields(line.data());
     std::string kind;
     std::string field;
-    Sample sample;
+    Recorded sample;
     std::getline(fields, field, ',');
     sample.t = std::stod(field);
     std::getline(fields, kind, ',');
@@ -58,10 +58,10 @@ Recording read_recording(const std::string& name) {
 }
 
 /// The values of `samples` at `t`, between the two next to it, or of the one before it.
-std::array<double, 9> at(const std::vector<Sample>& samples, double t, bool between) {
-  auto after = std::upper_bound(samples.begin(), samples.end(), t, [](double x, const Sample& s) { return x < s.t; });
+std::array<double, 9> at(const std::vector<Recorded>& samples, double t, bool between) {
+  auto after = std::upper_bound(samples.begin(), samples.end(), t, [](double x, const Recorded& s) { return x < s.t; });
   if (after == samples.begin()) return after->values;
-  const Sample& before = *std::prev(after);
+  const Recorded& before = *std::prev(after);
   if (!between || after == samples.end()) return before.values;
   const double part = (t - before.t) / (after->t - before.t);
   std::array<double, 9> values{};
@@ -99,8 +99,8 @@ struct Flown {
 /// errors.
 Flown flown(const std::string& name) {
   const Recording recording = read_recording(name);
-  const std::vector<Sample>& setpoints = recording.at("setpoint");
-  const auto held = [](const Sample& s) { return std::isfinite(s.values[0]) && std::isfinite(s.values[2]); };
+  const std::vector<Recorded>& setpoints = recording.at("setpoint");
+  const auto held = [](const Recorded& s) { return std::isfinite(s.values[0]) && std::isfinite(s.values[2]); };
   const double begin = std::find_if(setpoints.begin(), setpoints.end(), held)->t + kTakeoffTime;
   const double ground = recording.at("truth").front().values[2];
   const Vec3 position_gain(0.95, 0.95, 1.0);

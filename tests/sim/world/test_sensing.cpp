@@ -10,13 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "tests/sim/examples.hpp"
+
 namespace jink::sim::world {
 namespace {
-
-config::Obstacle ball(double radius, const Vec3& position, const Vec3& velocity = Vec3::Zero(),
-                      const Vec3& acceleration = Vec3::Zero()) {
-  return {config::SphereShape{radius}, config::LinearMotion{position, velocity, acceleration}};
-}
 
 World world_of(std::vector<config::Obstacle> obstacles) {
   config::Scenario scenario;

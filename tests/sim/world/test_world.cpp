@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/world/shapes.hpp"
+#include "tests/sim/examples.hpp"
 #include "tests/sim/world/random_obstacles.hpp"
 
 namespace jink::sim::world {
@@ -26,11 +27,6 @@ config::Scenario scenario_with(std::vector<config::Obstacle> obstacles) {
   scenario.vehicle.radius = kVehicleRadius;
   scenario.obstacles = std::move(obstacles);
   return scenario;
-}
-
-config::Obstacle ball(double radius, const Vec3& position, const Vec3& velocity = Vec3::Zero(),
-                      const Vec3& acceleration = Vec3::Zero()) {
-  return {config::SphereShape{radius}, config::LinearMotion{position, velocity, acceleration}};
 }
 
 config::Obstacle corner_at(const Vec3& position) {

@@ -16,11 +16,10 @@
 
 #include "tests/support/temporary_folder.hpp"
 #include "tools/cli/command_line.hpp"
+#include "tools/log/log_reader.hpp"
 
 namespace jink::tools::log {
 namespace {
-
-using Json = nlohmann::json;
 
 std::vector<Json> records(const std::string& text) {
   std::vector<Json> list;

@@ -22,8 +22,6 @@
 namespace jink::tools::log {
 namespace {
 
-using Json = nlohmann::json;
-
 /// Header and first record.
 std::array<std::string, 2> first_lines(const std::filesystem::path& file) {
   std::istringstream in(support::read(file));

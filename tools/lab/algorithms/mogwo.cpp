@@ -14,7 +14,8 @@ namespace jink::tools::lab::algorithms {
 namespace {
 
 /// Parameters of [Paper] section 5.5.
-constexpr GridSettings kGrid{.inflation = 0.1, .cells = 10, .leader = 4, .deletion = 2, .pressure = Pressure::kPower};
+constexpr GridSettings kWolfGrid{
+    .inflation = 0.1, .cells = 10, .leader = 4, .deletion = 2, .pressure = Pressure::kPower};
 
 /// Each wolf goes to the mean of three places, each about a leader from a sparse part of the repository.
 ///
@@ -25,7 +26,7 @@ class Mogwo final : public Swarm {
  public:
   Mogwo(const planner::base::OptimizerSettings& settings, int dimension, int objectives)
       : Swarm(settings, dimension, objectives),
-        repository_(kGrid, static_cast<std::size_t>(settings.archive), dimension, objectives) {}
+        repository_(kWolfGrid, static_cast<std::size_t>(settings.archive), dimension, objectives) {}
 
  protected:
   void begin() override { repository_.clear(); }

@@ -14,7 +14,7 @@ namespace {
 
 /// Parameters of [Paper] section 5.5 as printed there (leader pressure 2); the deletion pressure, which it does not
 /// give, is that of the circulating code.
-constexpr GridSettings kGrid{
+constexpr GridSettings kSwarmGrid{
     .inflation = 0.1, .cells = 7, .leader = 2, .deletion = 2, .pressure = Pressure::kExponential};
 constexpr double kCognitive = 2.0;  // c1, [Paper] section 5.5
 constexpr double kSocial = 2.0;     // c2
@@ -30,7 +30,7 @@ class Mopso final : public Swarm {
  public:
   Mopso(const planner::base::OptimizerSettings& settings, int dimension, int objectives)
       : Swarm(settings, dimension, objectives),
-        repository_(kGrid, static_cast<std::size_t>(settings.archive), dimension, objectives),
+        repository_(kSwarmGrid, static_cast<std::size_t>(settings.archive), dimension, objectives),
         objectives_(objectives) {}
 
  protected:

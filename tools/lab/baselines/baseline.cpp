@@ -9,10 +9,10 @@
 namespace jink::tools::lab::baselines {
 namespace {
 
-constexpr double kRounding = 1e-9;  // s, of the companion's clock
-constexpr double kSlope = 0.1;      // s, over which a known path's present velocity is taken
-constexpr double kSameTime = 1e-6;  // s, between contacts that count as simultaneous
-constexpr double kAtTarget = 1e-6;  // m
+constexpr double kClockRounding = 1e-9;  // s, of the companion's clock
+constexpr double kSlope = 0.1;           // s, over which a known path's present velocity is taken
+constexpr double kSameTime = 1e-6;       // s, between contacts that count as simultaneous
+constexpr double kAtTarget = 1e-6;       // m
 
 }  // namespace
 
@@ -27,9 +27,9 @@ void BaselineTask::start(bridge::companion::PlanJob job) {
 }
 
 std::optional<bridge::companion::PlanResult> BaselineTask::poll(double now) {
-  if (!result_ || now + kRounding < result_->job.begun + latency_) return std::nullopt;
+  if (!result_ || now + kClockRounding < result_->job.begun + latency_) return std::nullopt;
   std::optional<bridge::companion::PlanResult> result = std::exchange(result_, std::nullopt);
-  result->missed = now > result->job.start + kRounding;
+  result->missed = now > result->job.start + kClockRounding;
   return result;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kRrtStream = 0x7272742aULL;  // "rrt*" in ASCII: apart from the other users of the seed
 constexpr double kLookShare = 0.75;                  // of the time looked ahead, that the goal is away at cruise speed
 constexpr double kSlackShare = 0.5;                  // of it, by which a place may be reached later
-constexpr double kAtTarget = 0.2;                    // m
+constexpr double kTargetTolerance = 0.2;             // m
 constexpr double kOnTheWay = 1.5;                    // m, to a goal that is not the target
 constexpr double kTouching = 0.01;                   // m, left to a sphere that the start is too near to
 constexpr double kCornerMargin = 0.1;  // m, kept beyond the margin, since the motion cuts the way's corners
@@ -101,7 +101,7 @@ SpaceTimeProblem RrtPilot::problem(const planner::horizon::PathRequest& request,
   const double reach = kLookShare * horizon.time * request.vehicle.cruise_speed;
   const bool near = way.norm() <= reach;
   problem.goal = near ? request.target : Vec3(request.position + way * (reach / way.norm()));
-  problem.tolerance = near ? kAtTarget : kOnTheWay;
+  problem.tolerance = near ? kTargetTolerance : kOnTheWay;
   problem.region = region(request, problem.goal, horizon.lateral_range);
   problem.spheres = spheres;
   problem.acceleration_trust = request.acceleration_trust;

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostCommands = 10;  // of failed flights that are printed
 
-constexpr const char* kFooter =
+constexpr const char* kArenaFooter =
     "Writes into --out: flights.jsonl (a line for each flight as it ends), flights.csv, table.csv, table.json, "
     "table.md,\n"
     "arena.html, planner.yaml, and failed/NAME with scenario and log of each flight that did not reach.\n"
@@ -229,7 +229,8 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
                  "families of worlds, A,B or all: " + names(sim::families::world_families()))
       .show_default();
   app.add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(baselines::pilots())).show_default();
-  app.add_option("--tiers", options->tiers, "how well obstacles and the vehicle itself are known, A,B or all: " + names(arena::tiers()))
+  app.add_option("--tiers", options->tiers,
+                 "how well obstacles and the vehicle itself are known, A,B or all: " + names(arena::tiers()))
       .show_default();
   app.add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
       .transform(cli::whole_number(1, campaign::kMostRuns))
@@ -253,7 +254,7 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
       .expected(2, 2);
   options->common.add_to(app);
   app.option("--threads").describe("flights at once, 1 to 256 (default: one for each core)");
-  app.footer(kFooter);
+  app.footer(kArenaFooter);
   return {app, [options, app] {
             refuse_useless(app);
             return run(*options);

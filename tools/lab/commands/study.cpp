@@ -21,7 +21,7 @@ constexpr int kRuns = 20;  // [Paper] section 5.2
 constexpr int kQuickRuns = 5;
 constexpr std::size_t kToldVerdicts = 2;  // on the terminal: against NSGA-II and MOEA/D
 
-constexpr const char* kFooter =
+constexpr const char* kStudyFooter =
     "Writes into --out: runs.jsonl (a line for each run as it ends), tableNN.csv, .md and .tex, figureNN.png, .svg, "
     ".gp\n"
     "and .dat, worlds/ (the blocked worlds), planner.yaml and report.html, which reads as a short paper.\n"
@@ -168,7 +168,7 @@ cli::Subcommand add_study(const cli::Parser& jink) {
   options->common.add_to(app);
   app.option("--threads")
       .describe("runs at once, and threads of the planner in timed runs, 1 to 256 (default: one for each core)");
-  app.footer(kFooter);
+  app.footer(kStudyFooter);
   return {app, [options, app] {
             campaign::refuse_beside(app, "--merge",
                                     {"--runs", "--quick", "--resume", "--shard", "--seed", "--config", "--set"});

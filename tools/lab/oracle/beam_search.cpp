@@ -17,17 +17,15 @@
 #include <vector>
 
 #include "sim/world/world.hpp"
+#include "tools/lab/oracle/cells.hpp"
 #include "tools/lab/oracle/feasibility.hpp"
 
 namespace jink::tools::lab::oracle {
 namespace {
 
-using Index = Eigen::Array3i;
-
 constexpr double kStep = 0.5;         // s
 constexpr double kGrid = 0.25;        // m, kStep · 1 m/s / 2
 constexpr int kSamples = 8;           // pieces of a step for which obstacles are taken to move straight
-constexpr double kAround = 8.0;       // m, of the mission that is searched where the scenario has no world
 constexpr double kLastLeg = 1.0;      // s, from rest at the last state to rest at the target
 constexpr double kLastLength = 0.44;  // m, at most, of that leg: sqrt(3) / 2 · 0.5 m and a little
 constexpr double kCoarse = 1.0;       // m, cells for which few states are kept, so that a beam does not bunch

@@ -2,11 +2,17 @@
 // A set of the cells of a grid that can grow by its neighbours quickly: one bit each, 64 at a time.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace jink::tools::lab::oracle {
+
+using Index = Eigen::Array3i;  ///< of a cell
+
+/// m, of the mission that is searched where the scenario has no world.
+inline constexpr double kAround = 8.0;
 
 /// Indices run from 0 to nx - 1 and so on; others are a programming error.
 class Cells {

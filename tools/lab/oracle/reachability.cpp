@@ -13,11 +13,8 @@
 namespace jink::tools::lab::oracle {
 namespace {
 
-constexpr double kStep = 0.05;      // s
-constexpr double kAround = 8.0;     // m, of the mission that is looked at where the scenario has no world
-constexpr double kRoundUp = 1.001;  // by which a cell is longer than the way of a step
-
-using Index = Eigen::Array3i;
+constexpr double kReachStep = 0.05;  // s
+constexpr double kRoundUp = 1.001;   // by which a cell is longer than the way of a step
 
 /// What a box or a hull blocks while it stands.
 struct Blocked {
@@ -30,7 +27,7 @@ class Reachability {
  public:
   explicit Reachability(const config::Scenario& scenario)
       : world_(scenario),
-        cell_(kStep * kRoundUp *
+        cell_(kReachStep * kRoundUp *
               Vec3(scenario.vehicle.max_speed, scenario.vehicle.max_speed, scenario.vehicle.max_climb)),
         open_(!scenario.world),
         box_(box_of(scenario)),
@@ -44,9 +41,9 @@ class Reachability {
     if (world_.clearance(scenario.start, 0.0) < 0.0) return false;
     const Index start = cell_of(scenario.start);
     reached_.add(start.x(), start.y(), start.z());
-    for (int step = 0; step * kStep <= scenario.time_limit; ++step) {
+    for (int step = 0; step * kReachStep <= scenario.time_limit; ++step) {
       if (open_) reached_.add_faces();
-      for (int i = 0; i < world_.obstacle_count(); ++i) remove_blocked(i, step * kStep);
+      for (int i = 0; i < world_.obstacle_count(); ++i) remove_blocked(i, step * kReachStep);
       if (reached_near(scenario.target, acceptance)) return true;
       reached_.grow();
     }

@@ -9,8 +9,6 @@
 namespace jink::tools::lab::presentation {
 namespace {
 
-constexpr std::size_t kManyColumns = 7;  // more are set closer
-
 std::string figure_name(const std::string& id) {
   return numbered_name(id, "figure", "Figure");
 }

@@ -14,7 +14,6 @@ namespace jink::tools::lab::presentation {
 namespace {
 
 constexpr const char* kNothing = "-";
-constexpr std::size_t kManyColumns = 7;  // more are set smaller in print
 
 void check(const Table& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i)

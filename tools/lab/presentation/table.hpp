@@ -10,6 +10,9 @@
 
 namespace jink::tools::lab::presentation {
 
+/// More are set closer, and smaller in print.
+inline constexpr std::size_t kManyColumns = 7;
+
 /// One place of a table.
 struct Cell {
   std::string text;             ///< as shown

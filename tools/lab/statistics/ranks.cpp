@@ -14,8 +14,6 @@
 namespace jink::tools::lab::statistics {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void check_alpha(double alpha) {
   if (!(alpha > 0.0 && alpha < 1.0))
     throw std::invalid_argument("alpha has to be between 0 and 1, not " + std::to_string(alpha));
@@ -116,7 +114,7 @@ Friedman friedman(const Scores& ranks, double alpha) {
   result.chi_square = (sums.mu - 1.0) * sums.sigma * among / total;
   result.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(sums.mu - 1.0), result.chi_square));
   const double rest = sums.disagreement() / sums.sigma;
-  result.iman_davenport = rest <= 0.0 ? kInfinity : (sums.sigma - 1.0) * among / rest;
+  result.iman_davenport = rest <= 0.0 ? std::numeric_limits<double>::infinity() : (sums.sigma - 1.0) * among / rest;
   result.iman_p = rest <= 0.0 ? 0.0 : boost::math::cdf(boost::math::complement(f, result.iman_davenport));
   result.rejected = result.iman_davenport > result.critical_f;
   return result;

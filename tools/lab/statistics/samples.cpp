@@ -13,7 +13,6 @@
 namespace jink::tools::lab::statistics {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNormalQuantile = 1.959963984540054;  // of 0.975
 constexpr double kMicrosecond = 1e-3;                  // ms
@@ -71,7 +70,7 @@ Summary summary(std::span<const double> values, double level) {
   result.least = sorted.front();
   result.greatest = sorted.back();
   result.median = quantile(sorted, 0.5);
-  double half = kInfinity;
+  double half = std::numeric_limits<double>::infinity();
   if (values.size() > 1) {
     const double n = static_cast<double>(values.size());
     const boost::math::students_t t(n - 1.0);

@@ -15,7 +15,7 @@ constexpr const char* kTimeLabel = "Planning time (ms)";
 constexpr double kApart = 0.15;      // by which fronts are moved so that they do not cover one another
 constexpr double kLeastLost = 1e-5;  // of hypervolume that a logarithmic axis shows
 
-std::vector<double> planning_ms(const Records& records) {
+std::vector<double> planning_times_ms(const Records& records) {
   return scaled(measured(records, key::kPlanning), 1000.0);
 }
 
@@ -42,7 +42,7 @@ void add_if_any(figures::Panel& panel, figures::Series series) {
   if (!series.x.empty()) panel.series.push_back(std::move(series));
 }
 
-std::string world_text(bool blocked) {
+std::string one_world(bool blocked) {
   return blocked ? "a blocked world of scenario 5's size" : "scenario 5";
 }
 
@@ -52,13 +52,13 @@ CaptionedFigure fronts_figure(const Selection& selection, const Setting& setting
   const FrontStep& step = setting.steps_of(hardest_world(blocked)).front();
   CaptionedFigure result;
   result.figure.id = blocked ? "figure08-blocked" : "figure08";
-  result.figure.title = "Pareto fronts at the first step in " + world_text(blocked);
+  result.figure.title = "Pareto fronts at the first step in " + one_world(blocked);
   result.figure.columns = 2;
   result.caption = fmt::format(
       "Fronts of the first run at the first step (waypoint {} of {}) in {}, in units of the reference front's extent; "
       "a panel for each sharing rate l, and the reference front as a line. Each algorithm is moved up by {} so that "
       "none covers another. MOMVO does not share and is shown at l = 0.",
-      step.station + 1, setting.planner.paper.waypoints, world_text(blocked), kApart);
+      step.station + 1, setting.planner.paper.waypoints, one_world(blocked), kApart);
   for (const int l : sharing_rates()) {
     figures::Panel panel;
     panel.title = fmt::format("l = {}", l);
@@ -109,7 +109,7 @@ std::vector<CaptionedFigure> time_figures(const Selection& selection) {
   const std::string world = hardest_world(false);
   for (const std::string& algorithm : own_algorithms()) {
     figures::Series series = series_of(algorithm, figures::Kind::line_points);
-    for (const int l : sharing_rates()) add_mean(series, l, planning_ms(selection.paths(algorithm, world, l)));
+    for (const int l : sharing_rates()) add_mean(series, l, planning_times_ms(selection.paths(algorithm, world, l)));
     add_if_any(over_rates, std::move(series));
   }
   for (const int l : sharing_rates()) {
@@ -118,7 +118,7 @@ std::vector<CaptionedFigure> time_figures(const Selection& selection) {
     int slaves_of = 1;
     for (const std::string& algorithm : own_algorithms()) {
       if (has_slaves(algorithm)) slaves_of = std::stoi(algorithm.substr(algorithm.rfind('-') + 1));
-      add_mean(series, slaves_of, planning_ms(selection.paths(algorithm, world, l)));
+      add_mean(series, slaves_of, planning_times_ms(selection.paths(algorithm, world, l)));
     }
     add_if_any(over_slaves, std::move(series));
   }
@@ -142,7 +142,7 @@ CaptionedFigure comparison_figure(const Selection& selection) {
   figures::Series bars;
   bars.kind = figures::Kind::bars;
   for (const algorithms::Algorithm& algorithm : algorithms::algorithms()) {
-    const std::vector<double> sample = planning_ms(selection.paths(algorithm.name, hardest_world(false)));
+    const std::vector<double> sample = planning_times_ms(selection.paths(algorithm.name, hardest_world(false)));
     if (sample.empty()) continue;
     add_mean(bars, static_cast<double>(panel.categories.size()), sample);
     bars.low.back() = std::max(bars.low.back(), 0.5 * bars.y.back());  // an interval down to 0 has no place on the axis
@@ -176,7 +176,7 @@ void add_size_panels(figures::Figure& figure, const Selection& selection, bool o
         const int iterations = (over_population ? o : i) * sizes.iterations;
         const Records records = selection.paths(algorithm, hardest_world(blocked_length), population, iterations);
         const std::vector<double> sample =
-            blocked_length ? values(reached(records), key::kLength) : planning_ms(records);
+            blocked_length ? values(reached(records), key::kLength) : planning_times_ms(records);
         if (sample.empty()) continue;
         series.x.push_back(over_population ? population : iterations);
         series.y.push_back(statistics::mean(sample));
@@ -211,7 +211,7 @@ std::vector<CaptionedFigure> size_figures(const Selection& selection) {
 CaptionedFigure anytime_figure(const Selection& selection, const Setting& setting, bool blocked) {
   CaptionedFigure result;
   result.figure.id = blocked ? "anytime-blocked" : "anytime";
-  result.figure.title = "Hypervolume during the search in " + world_text(blocked);
+  result.figure.title = "Hypervolume during the search in " + one_world(blocked);
   double best = 0.0;
   const std::vector<FrontStep>& steps = setting.steps_of(hardest_world(blocked));
   for (const FrontStep& step : steps) best += step.reference.hypervolume / static_cast<double>(steps.size());
@@ -219,7 +219,7 @@ CaptionedFigure anytime_figure(const Selection& selection, const Setting& settin
       "Mean hypervolume that the front lacks to the reference fronts' {:.4f} with 95 % intervals, over evaluations and "
       "over the median wall time, at {} steps of {}; lower is better. All have fronts of at most {} members, so that "
       "something always lacks. {}",
-      best, steps.size(), world_text(blocked), setting.planner.optimizer.archive, timing_note(selection));
+      best, steps.size(), one_world(blocked), setting.planner.optimizer.archive, timing_note(selection));
   figures::Panel by_evaluations, by_time;
   by_evaluations.x_label = "Evaluations";
   by_time.x_label = "Wall time (ms)";

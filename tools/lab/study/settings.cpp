@@ -30,7 +30,7 @@ std::vector<config::SettingText> listed(const StudySettings& s) {
   return all;
 }
 
-int parameter(const StudySettings& settings, const std::string& key) {
+int whole_parameter(const StudySettings& settings, const std::string& key) {
   const auto found = std::find_if(settings.parameters.begin(), settings.parameters.end(),
                                   [&](const config::SettingText& one) { return one.key == key; });
   const auto value = found == settings.parameters.end() ? std::nullopt : campaign::whole<int>(found->value);
@@ -94,8 +94,8 @@ std::string Job::name() const {
 }
 
 PaperSizes sizes_of(const StudySettings& settings) {
-  return {parameter(settings, "optimizer.population"), parameter(settings, "optimizer.iterations"),
-          parameter(settings, "optimizer.sharing")};
+  return {whole_parameter(settings, "optimizer.population"), whole_parameter(settings, "optimizer.iterations"),
+          whole_parameter(settings, "optimizer.sharing")};
 }
 
 std::vector<int> sharing_rates() {

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "planner/base/random.hpp"
-#include "tests/tools/lab/algorithms/zdt.hpp"
+#include "tests/support/fronts.hpp"
 #include "tools/lab/algorithms/registry.hpp"
 
 namespace jink::tools::lab::algorithms {
 namespace {
 
-using testing::volume_of;
-using testing::Zdt;
+using testing_support::volume_of;
+using testing_support::Zdt;
 
 struct Floors {
   const char* name;

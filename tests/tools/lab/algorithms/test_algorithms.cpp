@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "planner/optimizer/pmomvo.hpp"
-#include "tests/tools/lab/algorithms/zdt.hpp"
+#include "tests/support/fronts.hpp"
 
 namespace jink::tools::lab::algorithms {
 namespace {
@@ -29,7 +29,7 @@ using planner::base::WorkerPool;
 using planner::optimizer::Cost;
 using planner::optimizer::Front;
 using planner::optimizer::Problem;
-using testing::Zdt;
+using testing_support::Zdt;
 
 constexpr Budget::Time kNever = Budget::Time::max();
 

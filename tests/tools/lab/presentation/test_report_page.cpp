@@ -31,7 +31,7 @@ TEST(Markup, IsEscapedInBothForms) {
   EXPECT_EQ(latex_prose("50 % of **a_b** `--runs`"), "50 \\% of \\textbf{a\\_b} \\texttt{--runs}");
 }
 
-Report sample() {
+Report sample_report() {
   jink::tools::figures::Figure figure;
   figure.id = "figure13";
   figure.panels.emplace_back();
@@ -60,7 +60,7 @@ Report sample() {
 }
 
 TEST(ReportPage, HoldsAllPartsInTheirOrder) {
-  const std::string html = report_html(sample());
+  const std::string html = report_html(sample_report());
   std::size_t at = 0;
   for (const char* part : {"<title>The &lt;study&gt;</title>",
                            "<h1>The &lt;study&gt;</h1>",
@@ -94,7 +94,7 @@ TEST(ReportPage, HoldsAllPartsInTheirOrder) {
 }
 
 TEST(ReportPage, NeedsNothingElse) {
-  const std::string html = report_html(sample());
+  const std::string html = report_html(sample_report());
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -107,7 +107,7 @@ TEST(ReportPage, NeedsNothingElse) {
 }
 
 TEST(ReportPage, IdsAreThePagesOwnAndReferencesFindThem) {
-  const std::string html = report_html(sample());
+  const std::string html = report_html(sample_report());
   std::set<std::string> ids;
   const std::regex id(" id=['\"]([^'\"]*)['\"]"), reference("(?:href=['\"]|url\\()#([^'\")]*)");
   for (std::sregex_iterator found(html.begin(), html.end(), id), end; found != end; ++found)

@@ -11,7 +11,7 @@ namespace jink::tools::lab::presentation {
 namespace {
 
 /// Two algorithms with two statistics each; a name that every form has to escape.
-Table sample() {
+Table sample_table() {
   Table table;
   table.id = "table06";
   table.title = "SLR & more: 100 % of a_b";
@@ -39,7 +39,7 @@ TEST(Cell, ShowsNumbersWithTheirDecimals) {
 }
 
 TEST(TableCsv, PutsThePapersNumbersAndMarksInColumnsOfTheirOwn) {
-  EXPECT_EQ(to_csv(sample()),
+  EXPECT_EQ(to_csv(sample_table()),
             "Algorithm,,Scenario 1,Scenario 1 (paper),Scenario 1 (marked),\"Scenario 2, \"\"hard\"\"\"\n"
             "A|B_1,Best,1.00012345,1.0204,yes,2\n"
             "A|B_1,Mean,1.5,1.0321,no,\n"
@@ -54,7 +54,7 @@ TEST(TableCsv, WritesNumbersInFull) {
 }
 
 TEST(TableMarkdown, HasThePapersNumbersInBrackets) {
-  EXPECT_EQ(to_markdown(sample()),
+  EXPECT_EQ(to_markdown(sample_table()),
             "### Table 6: SLR & more: 100 % of a\\_b\n\n"
             "| Algorithm |  | Scenario 1 | Scenario 2, \"hard\" |\n"
             "| --- | --- | ---: | ---: |\n"
@@ -66,7 +66,7 @@ TEST(TableMarkdown, HasThePapersNumbersInBrackets) {
 }
 
 TEST(TableLatex, GroupsRowsAndEscapes) {
-  EXPECT_EQ(to_latex(sample()),
+  EXPECT_EQ(to_latex(sample_table()),
             "% Needs \\usepackage{booktabs}.\n"
             "\\begin{table}[htbp]\n\\centering\n"
             "\\caption{SLR \\& more: 100 \\% of a\\_b}\n\\label{tab:table06}\n"
@@ -104,7 +104,7 @@ TEST(Table, WithoutPapersNumbersSaysNothingOfThem) {
 }
 
 TEST(Table, RefusesARowOfAnotherLength) {
-  Table table = sample();
+  Table table = sample_table();
   table.rows[1].pop_back();
   for (const auto& form : {to_csv, to_markdown, to_latex}) {
     try {
@@ -128,7 +128,7 @@ TEST(TableName, IsThePapers) {
 }
 
 TEST(RepeatedLabels, NeverHidesTheLastLabel) {
-  Table table = sample();
+  Table table = sample_table();
   EXPECT_EQ(repeated_labels(table, 0), 0U);
   EXPECT_EQ(repeated_labels(table, 1), 1U);
   EXPECT_EQ(repeated_labels(table, 2), 0U);

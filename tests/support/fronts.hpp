@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ZDT1 to ZDT3: E. Zitzler, K. Deb and L. Thiele, Evolutionary Computation 8(2), 2000. Two objectives, 30 variables in
-// [0, 1]; the fronts are where all variables but the first are 0.
+// For the tests of optimizers: problems whose fronts are known, and how good a front is.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -12,8 +13,17 @@
 #include "planner/optimizer/indicators.hpp"
 #include "planner/optimizer/problem.hpp"
 
-namespace jink::tools::lab::testing {
+namespace jink::testing_support {
 
+using planner::optimizer::Cost;
+using planner::optimizer::Point2;
+
+inline Cost cost(double f1, double f2, double violation = 0.0) {
+  return {{f1, f2, 0.0}, violation};
+}
+
+/// ZDT1 to ZDT3: E. Zitzler, K. Deb and L. Thiele, Evolutionary Computation 8(2), 2000. Two objectives, variables in
+/// [0, 1]; the fronts are where all variables but the first are 0. Fails the test where it is asked outside its box.
 class Zdt final : public planner::optimizer::Problem {
  public:
   /// `number` 1 to 3. `shift` moves the box and the front with it: variables in [shift, shift + 1].
@@ -28,11 +38,17 @@ class Zdt final : public planner::optimizer::Problem {
   [[nodiscard]] std::span<const double> lower() const override { return lower_; }
   [[nodiscard]] std::span<const double> upper() const override { return upper_; }
 
-  void evaluate(std::span<const double> x, std::span<planner::optimizer::Cost> costs) const override {
+  void evaluate(std::span<const double> x, std::span<Cost> costs) const override {
     const std::size_t d = lower_.size();
     for (std::size_t i = 0; i < costs.size(); ++i) {
       double sum = 0.0;
-      for (std::size_t j = 1; j < d; ++j) sum += x[i * d + j] - shift_;
+      bool inside = true;
+      for (std::size_t j = 0; j < d; ++j) {
+        const double value = x[i * d + j] - shift_;
+        inside = inside && value >= -kRounding && value <= 1.0 + kRounding;
+        if (j > 0) sum += value;
+      }
+      EXPECT_TRUE(inside);
       const double f1 = x[i * d] - shift_;
       const double g = 1.0 + 9.0 * sum / (static_cast<double>(d) - 1.0);
       costs[i] = {{f1, g * shape(f1, g), 0.0}, 0.0};
@@ -48,9 +64,9 @@ class Zdt final : public planner::optimizer::Problem {
   }
 
   /// Points of the true front, densely.
-  [[nodiscard]] std::vector<planner::optimizer::Point2> front() const {
+  [[nodiscard]] std::vector<Point2> front() const {
     constexpr int kPoints = 2000;
-    std::vector<planner::optimizer::Point2> points;
+    std::vector<Point2> points;
     double lowest = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= kPoints; ++i) {
       const double f1 = static_cast<double>(i) / kPoints;
@@ -63,15 +79,18 @@ class Zdt final : public planner::optimizer::Problem {
   }
 
  private:
+  static constexpr double kRounding = 1e-12;
+
   int number_;
   double shift_;
   std::vector<double> lower_, upper_;
 };
 
-inline double volume_of(std::span<const planner::optimizer::Cost> costs, const planner::optimizer::Point2& reference) {
-  std::vector<planner::optimizer::Point2> points;
-  for (const planner::optimizer::Cost& cost : costs) points.push_back({cost.f[0], cost.f[1]});
+/// Hypervolume of the first two objectives.
+inline double volume_of(std::span<const Cost> costs, const Point2& reference = {1.1, 1.1}) {
+  std::vector<Point2> points;
+  for (const Cost& c : costs) points.push_back({c.f[0], c.f[1]});
   return planner::optimizer::hypervolume(points, reference);
 }
 
-}  // namespace jink::tools::lab::testing
+}  // namespace jink::testing_support
