@@ -181,6 +181,10 @@ void MavlinkEndpoint::Impl::handle(MavlinkLink& link, const mavlink_message_t& m
     case MAVLINK_MSG_ID_MISSION_REQUEST_LIST:
     case MAVLINK_MSG_ID_MISSION_COUNT:
       return handle_mission(link, message);
+    case MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL:
+      return handle_file_transfer(link, message);
+    case MAVLINK_MSG_ID_LOG_REQUEST_LIST:
+      return handle_log_list(link, message);
     default:
       break;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands and their acknowledgements, as PX4's SITL answers them.
 #include <cmath>
+#include <limits>
 
 #include "sim/mavlink/endpoint_impl.hpp"
 
@@ -99,6 +100,8 @@ vehicle::Result MavlinkEndpoint::Impl::execute(MavlinkLink& link, const Command&
       return get_message_interval(link, command);
     case MAV_CMD_REQUEST_MESSAGE:
       return request_message(link, whole(command.param1));
+    case MAV_CMD_GET_HOME_POSITION:
+      return request_message(link, MAVLINK_MSG_ID_HOME_POSITION);
     case MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
       return request_message(link, MAVLINK_MSG_ID_AUTOPILOT_VERSION);
     case MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN:
@@ -121,23 +124,27 @@ vehicle::Result MavlinkEndpoint::Impl::take_off(const Command& command) {
   return autopilot_.takeoff(static_cast<double>(command.param7) - to_global(Vec3::Zero()).altitude_m);
 }
 
+/// What is NaN stays as it is. A change of mode has to be asked for: PX4 repositions in HOLD alone.
 vehicle::Result MavlinkEndpoint::Impl::reposition(const Command& command) {
-  const Vec3 here = autopilot_.estimated_motion().position;
+  if (whole(command.param2) != MAV_DO_REPOSITION_FLAGS_CHANGE_MODE) return vehicle::Result::kUnsupported;
   const bool has_place = std::isfinite(command.latitude_deg) && std::isfinite(command.longitude_deg);
   if (has_place && (std::abs(command.latitude_deg) > 90.0 || std::abs(command.longitude_deg) > 180.0)) {
     return vehicle::Result::kDenied;
   }
   if (std::abs(static_cast<double>(command.param7)) > kMaxAltitude) return vehicle::Result::kDenied;
-  if (!has_place && !std::isfinite(command.param7)) return autopilot_.hold();
   bridge::frames::Geodetic target = global_position();
   if (has_place) {
     target.latitude_deg = command.latitude_deg;
     target.longitude_deg = command.longitude_deg;
   }
-  if (std::isfinite(command.param7)) target.altitude_m = static_cast<double>(command.param7);
+  const bool has_altitude = std::isfinite(command.param7);
+  if (has_altitude) target.altitude_m = static_cast<double>(command.param7);
   Vec3 position = to_local(target);
-  if (!std::isfinite(command.param7)) position.z() = here.z();
-  return autopilot_.reposition(position);
+  if (!has_place) position.head<2>().setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (!has_altitude) position.z() = std::numeric_limits<double>::quiet_NaN();
+  const auto yaw_ned = static_cast<double>(command.param4);
+  return autopilot_.reposition(position, std::isfinite(yaw_ned) ? vehicle::swap_yaw(yaw_ned) : yaw_ned,
+                               static_cast<double>(command.param1));
 }
 
 vehicle::Result MavlinkEndpoint::Impl::set_home(const Command& command) {

@@ -124,6 +124,10 @@ class MavlinkEndpoint::Impl {
   void send_event_sequence(MavlinkLink& link);
   [[nodiscard]] bool ground_station_heard() const;
 
+  // endpoint_files.cpp
+  void handle_file_transfer(MavlinkLink& link, const mavlink_message_t& message);
+  void handle_log_list(MavlinkLink& link, const mavlink_message_t& message);
+
   // mavlink_sensors.cpp
   void send_highres_imu(MavlinkLink& link);
   void send_gps_raw(MavlinkLink& link);

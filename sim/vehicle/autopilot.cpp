@@ -188,10 +188,19 @@ Result Autopilot::return_home() {
   return change_mode(FlightMode::kReturn);
 }
 
-Result Autopilot::reposition(const Vec3& position) {
-  if (!armed_ || landed_ || !position.allFinite()) return Result::kTemporarilyRejected;
+Result Autopilot::reposition(const Vec3& position, double yaw, double speed) {
+  const bool held = mode() == FlightMode::kHold;
+  const Vec3 place = hold_position_;
   const Result result = change_mode(FlightMode::kHold);
-  if (result == Result::kAccepted) hold_position_ = position;
+  if (result != Result::kAccepted || !armed_ || landed_) return result;
+  // Nothing given: it stops where it comes to rest.
+  const bool has_place = std::isfinite(position.x()) && std::isfinite(position.y());
+  const bool has_height = std::isfinite(position.z());
+  if (held && (has_height || std::isfinite(yaw))) hold_position_.head<2>() = place.head<2>();
+  if (has_place) hold_position_.head<2>() = position.head<2>();
+  if (has_height) hold_position_.z() = position.z();
+  if (std::isfinite(yaw)) hold_yaw_ = yaw;
+  if (speed > 0.0) cruise_speed_ = speed;
   return result;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -105,8 +106,10 @@ class Autopilot {
   Result land();
   Result hold();
   Result return_home();
-  /// Flies to a point, then holds there; refused on the ground.
-  Result reposition(const Vec3& position);
+  /// HOLD, and in the air at that point (a part that is not finite stays as it is), with that yaw and at most that
+  /// speed on the way there when they are finite and, the speed, positive.
+  Result reposition(const Vec3& position, double yaw = std::numeric_limits<double>::quiet_NaN(),
+                    double speed = std::numeric_limits<double>::quiet_NaN());
   Result set_home(const Vec3& position);
   /// A setpoint for OFFBOARD: keeps the stream alive whatever the mode. Refused, and no sign of life, unless each
   /// axis has a position, a velocity or an acceleration and nothing is infinite.
@@ -228,6 +231,8 @@ class Autopilot {
   Setpoint active_setpoint_;
   Vec3 home_ = Vec3::Zero();
   Vec3 hold_position_ = Vec3::Zero();
+  double hold_yaw_ = std::numeric_limits<double>::quiet_NaN();
+  double cruise_speed_ = planner::base::kInfinity;  ///< as asked for on the way; MPC_XY_CRUISE bounds it too
   double takeoff_height_ = 0.0;
   double armed_at_ = 0.0;
   double ramp_started_ = 0.0;

@@ -82,6 +82,8 @@ void Autopilot::enter_active_mode() {
   guided_mode_ = mode();
   hold_position_ = estimated_motion().position + kBrakingTime * estimated_motion().velocity;
   hold_position_.z() = std::max(hold_position_.z(), local_ground());
+  hold_yaw_ = std::numeric_limits<double>::quiet_NaN();
+  cruise_speed_ = planner::base::kInfinity;
   return_climbed_ = return_arrived_ = false;
 }
 
@@ -123,7 +125,9 @@ SpeedBounds Autopilot::bounds() const {
   SpeedBounds result{.speed = parameters_.real("MPC_XY_VEL_MAX"),
                      .climb = parameters_.real("MPC_Z_VEL_MAX_UP"),
                      .descent = parameters_.real("MPC_Z_VEL_MAX_DN")};
-  if (mode() != FlightMode::kOffboard) result.speed = std::min(result.speed, parameters_.real("MPC_XY_CRUISE"));
+  if (mode() != FlightMode::kOffboard) {
+    result.speed = std::min({result.speed, parameters_.real("MPC_XY_CRUISE"), cruise_speed_});
+  }
   if (phase_ == Phase::kRamp) {
     result.climb = std::min(result.climb, kRampClimb);
   } else if (time() - ramp_started_ < kTakeoffClimbTime) {
@@ -171,6 +175,7 @@ Setpoint Autopilot::guide_hold() const {
   Setpoint setpoint;
   setpoint.position = hold_position_;
   setpoint.velocity.setZero();
+  setpoint.yaw = hold_yaw_;
   return setpoint;
 }
 

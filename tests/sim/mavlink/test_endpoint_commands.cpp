@@ -2,6 +2,7 @@
 // Commands and their acknowledgements.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "tests/sim/mavlink/endpoint_fixture.hpp"
@@ -105,6 +106,8 @@ TEST_F(AirborneEndpointTest, RepositionTakesGlobalCoordinates) {
   mavlink_command_int_t message{};
   message.target_system = message.target_component = 1;
   message.command = MAV_CMD_DO_REPOSITION;
+  message.param2 = MAV_DO_REPOSITION_FLAGS_CHANGE_MODE;
+  message.param4 = 1.0F;        // rad from north
   message.x = 473977430 + 899;  // 10 m north
   message.y = 85455940;
   message.z = 489.4F + 5.0F;
@@ -113,6 +116,31 @@ TEST_F(AirborneEndpointTest, RepositionTakesGlobalCoordinates) {
   EXPECT_EQ(acknowledgements(MAV_CMD_DO_REPOSITION), (Results{0}));
   run(20.0);
   EXPECT_LT((autopilot.true_motion().position - Vec3(0, 10, 5)).norm(), 0.15);
+  EXPECT_NEAR(vehicle::swap_yaw(autopilot.true_motion().yaw), 1.0, 0.02);
+  // NaN keeps: first all but the height, then all.
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {kNan, 1, 0, kNan, kNan, kNan, 489.4F + 8.0F}), (Results{0}));
+  run(10.0);
+  EXPECT_LT((autopilot.true_motion().position - Vec3(0, 10, 8)).norm(), 0.15);
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {kNan, 1, 0, kNan, kNan, kNan, kNan}), (Results{0}));
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {kNan, 0, 0, kNan, 47.4F, 8.5F, 500}), (Results{3}));  // no change of mode
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {kNan, 1, 0, kNan, 91, 8.5F, 500}), (Results{2}));
+}
+
+TEST_F(AirborneEndpointTest, RepositionKeepsToTheSpeedAskedFor) {
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {1.0F, 1, 0, kNan, 47.39832F, 8.545594F, 489.4F + 3.0F}), (Results{0}));
+  double fastest = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    run(0.5);
+    fastest = std::max(fastest, autopilot.true_motion().velocity.head<2>().norm());
+  }
+  EXPECT_NEAR(fastest, 1.0, 0.1);
+}
+
+TEST_F(MavlinkEndpointTest, RepositionOnTheGroundIsHold) {
+  EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
+  EXPECT_EQ(command(MAV_CMD_DO_REPOSITION, {-1, 1, 0, kNan, 47.4F, 8.5F, 500}), (Results{0}));
+  EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kHold);
+  EXPECT_TRUE(autopilot.landed());
 }
 
 TEST_F(MavlinkEndpointTest, MessageIntervalsCanBeChangedAskedForAndReset) {

@@ -184,13 +184,15 @@ TEST(Autopilot, HoldBrakesAndKeepsItsPlace) {
   EXPECT_LT((flight.autopilot.true_motion().position - place).norm(), 0.2);
 }
 
-TEST(Autopilot, RepositionFliesToAPointAndNeedsFlight) {
+TEST(Autopilot, RepositionFliesToAPointAndIsHoldOnTheGround) {
   Flight flight(airborne_options());
   EXPECT_EQ(flight.autopilot.reposition({5, -4, 6}), Result::kAccepted);
   flight.run(15.0);
   EXPECT_LT((flight.autopilot.true_motion().position - Vec3(5, -4, 6)).norm(), 0.1);
   Flight grounded(instant_options());
-  EXPECT_EQ(grounded.autopilot.reposition({5, -4, 6}), Result::kTemporarilyRejected);
+  EXPECT_EQ(grounded.autopilot.reposition({5, -4, 6}), Result::kAccepted);
+  grounded.run(5.0);
+  EXPECT_TRUE(grounded.autopilot.landed());
 }
 
 TEST(Autopilot, AStreamThatStopsTriggersTheDefaultFailsafeAndItSinksAndLands) {
