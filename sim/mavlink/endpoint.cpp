@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Links, and what comes in besides commands: setpoints, parameters, time, missions.
+// Links, and what comes in besides commands: setpoints, parameters, time.
 #include "sim/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -91,6 +91,7 @@ MavlinkEndpoint::Impl::Impl(vehicle::Autopilot& autopilot, const EndpointOptions
   const auto open = [&](std::uint16_t local, std::uint16_t remote) {
     links_.emplace_back(udp_address(options_.address, local), udp_address(options_.address, remote), system_id_,
                         options_.seed);
+    missions_.emplace_back(mission_lists_, system_id_);
     reset_streams(links_.back());
   };
   open(port_or(options_.companion_local_port, kCompanionLocalPort + options_.instance),
@@ -112,6 +113,7 @@ void MavlinkEndpoint::Impl::poll(double now) {
   }
   watch_reboots();  // a command may ask for one
   watch_companion();
+  update_missions();
   for (MavlinkLink& link : links_) {
     send_streams(link);
     send_listed_parameters(link);
@@ -132,6 +134,7 @@ void MavlinkEndpoint::Impl::watch_reboots() {
     reset_streams(link);
     link.ground_station = link.listing_parameters = false;
   }
+  for (MissionProtocol& mission : missions_) mission.reset();
 }
 
 void MavlinkEndpoint::Impl::handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message) {
@@ -178,15 +181,12 @@ void MavlinkEndpoint::Impl::handle(MavlinkLink& link, const mavlink_message_t& m
       return handle_timesync(link, message);
     case MAVLINK_MSG_ID_PING:
       return handle_ping(link, message);
-    case MAVLINK_MSG_ID_MISSION_REQUEST_LIST:
-    case MAVLINK_MSG_ID_MISSION_COUNT:
-      return handle_mission(link, message);
     case MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL:
       return handle_file_transfer(link, message);
     case MAVLINK_MSG_ID_LOG_REQUEST_LIST:
       return handle_log_list(link, message);
     default:
-      break;
+      return handle_mission(link, message);
   }
 }
 
@@ -285,30 +285,6 @@ void MavlinkEndpoint::Impl::handle_parameter_set(const mavlink_message_t& messag
   if (!autopilot_.parameters().set(name, value)) return;
   const auto index = autopilot_.parameters().find(name);
   for (MavlinkLink& link : links_) send_parameter(link, *index);
-}
-
-/// It flies no missions: its list is empty, and an upload is refused.
-void MavlinkEndpoint::Impl::handle_mission(MavlinkLink& link, const mavlink_message_t& message) {
-  if (message.msgid == MAVLINK_MSG_ID_MISSION_REQUEST_LIST) {
-    mavlink_mission_request_list_t request;
-    mavlink_msg_mission_request_list_decode(&message, &request);
-    if (!for_us(request.target_system, request.target_component)) return;
-    mavlink_mission_count_t count{};
-    count.target_system = message.sysid;
-    count.target_component = message.compid;
-    count.mission_type = request.mission_type;
-    link.send(mavlink_msg_mission_count_encode_status, count);
-    return;
-  }
-  mavlink_mission_count_t upload;
-  mavlink_msg_mission_count_decode(&message, &upload);
-  if (!for_us(upload.target_system, upload.target_component)) return;
-  mavlink_mission_ack_t refusal{};
-  refusal.target_system = message.sysid;
-  refusal.target_component = message.compid;
-  refusal.type = MAV_MISSION_UNSUPPORTED;
-  refusal.mission_type = upload.mission_type;
-  link.send(mavlink_msg_mission_ack_encode_status, refusal);
 }
 
 void MavlinkEndpoint::Impl::handle_timesync(MavlinkLink& link, const mavlink_message_t& message) {

@@ -8,6 +8,7 @@
 
 #include "sim/mavlink/endpoint.hpp"
 #include "sim/mavlink/link.hpp"
+#include "sim/mavlink/mission_protocol.hpp"
 
 namespace jink::sim::mavlink {
 
@@ -61,7 +62,6 @@ class MavlinkEndpoint::Impl {
   void handle_parameter_read(MavlinkLink& link, const mavlink_message_t& message);
   void handle_parameter_set(const mavlink_message_t& message);
   void handle_parameter_list(MavlinkLink& link, const mavlink_message_t& message);
-  void handle_mission(MavlinkLink& link, const mavlink_message_t& message);
   void handle_timesync(MavlinkLink& link, const mavlink_message_t& message);
   void handle_ping(MavlinkLink& link, const mavlink_message_t& message);
   void send_parameter(MavlinkLink& link, std::size_t index);
@@ -116,7 +116,6 @@ class MavlinkEndpoint::Impl {
   void send_timesync(MavlinkLink& link);
   void send_ping(MavlinkLink& link);
   void send_estimator_status(MavlinkLink& link);
-  void send_mission_current(MavlinkLink& link);
   void send_autopilot_version(MavlinkLink& link);
 
   // mavlink_events.cpp
@@ -127,6 +126,12 @@ class MavlinkEndpoint::Impl {
   // endpoint_files.cpp
   void handle_file_transfer(MavlinkLink& link, const mavlink_message_t& message);
   void handle_log_list(MavlinkLink& link, const mavlink_message_t& message);
+
+  // endpoint_missions.cpp
+  void handle_mission(MavlinkLink& link, const mavlink_message_t& message);
+  void update_missions();
+  void send_mission_current(MavlinkLink& link);
+  static void send_mission_messages(MavlinkLink& link, const std::vector<MissionMessage>& messages);
 
   // mavlink_sensors.cpp
   void send_highres_imu(MavlinkLink& link);
@@ -154,6 +159,8 @@ class MavlinkEndpoint::Impl {
   std::uint16_t event_sequence_ = 0;  ///< of the newest event
   bool events_sent_ = false;          ///< since the boot
   std::vector<MavlinkLink> links_;
+  MissionLists mission_lists_;
+  std::vector<MissionProtocol> missions_;  ///< parallel to links_
 };
 
 }  // namespace jink::sim::mavlink

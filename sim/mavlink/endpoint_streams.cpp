@@ -409,18 +409,13 @@ void MavlinkEndpoint::Impl::send_estimator_status(MavlinkLink& link) {
   link.send(mavlink_msg_estimator_status_encode_status, message);
 }
 
-void MavlinkEndpoint::Impl::send_mission_current(MavlinkLink& link) {
-  mavlink_mission_current_t message{};
-  message.total = 65535;
-  message.mission_state = MISSION_STATE_NO_MISSION;
-  link.send(mavlink_msg_mission_current_encode_status, message);
-}
-
 void MavlinkEndpoint::Impl::send_autopilot_version(MavlinkLink& link) {
   mavlink_autopilot_version_t message{};
   message.capabilities = MAV_PROTOCOL_CAPABILITY_MAVLINK2 | MAV_PROTOCOL_CAPABILITY_COMMAND_INT |
-                         MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE |
-                         MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED;
+                         MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT | MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE |
+                         MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT | MAV_PROTOCOL_CAPABILITY_MISSION_INT |
+                         MAV_PROTOCOL_CAPABILITY_MISSION_FENCE | MAV_PROTOCOL_CAPABILITY_MISSION_RALLY |
+                         MAV_PROTOCOL_CAPABILITY_FTP | MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED;
   message.flight_sw_version = message.middleware_sw_version = 0x01110040;  // 1.17.0 alpha
   message.board_version = 1;
   message.uid = system_id_;

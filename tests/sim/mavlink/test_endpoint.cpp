@@ -160,6 +160,9 @@ TEST_F(MavlinkEndpointTest, AnswersTimesyncPingAndMissionRequests) {
   mavlink_mission_request_list_t list{};
   list.target_system = list.target_component = 1;
   tell(mavlink_msg_mission_request_list_encode_status, list);
+  mavlink_mission_ack_t done{};
+  done.target_system = done.target_component = 1;
+  tell(mavlink_msg_mission_ack_encode_status, done);
   mavlink_mission_count_t upload{};
   upload.target_system = upload.target_component = 1;
   upload.count = 3;
@@ -174,7 +177,7 @@ TEST_F(MavlinkEndpointTest, AnswersTimesyncPingAndMissionRequests) {
   EXPECT_EQ(mavlink_msg_ping_get_seq(&last(MAVLINK_MSG_ID_PING)), 77U);
   EXPECT_EQ(mavlink_msg_ping_get_target_system(&last(MAVLINK_MSG_ID_PING)), kClientSystem);
   EXPECT_EQ(mavlink_msg_mission_count_get_count(&last(MAVLINK_MSG_ID_MISSION_COUNT)), 0);
-  EXPECT_EQ(mavlink_msg_mission_ack_get_type(&last(MAVLINK_MSG_ID_MISSION_ACK)), MAV_MISSION_UNSUPPORTED);
+  EXPECT_EQ(mavlink_msg_mission_request_int_get_seq(&last(MAVLINK_MSG_ID_MISSION_REQUEST_INT)), 0);
 }
 
 }  // namespace

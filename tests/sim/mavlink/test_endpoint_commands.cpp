@@ -74,7 +74,8 @@ TEST_F(MavlinkEndpointTest, AnswersTheOtherCommandsAsPx4) {
   EXPECT_EQ(command(MAV_CMD_REQUEST_MESSAGE, {148}), (Results{0}));
   const auto capabilities = mavlink_msg_autopilot_version_get_capabilities(&last(MAVLINK_MSG_ID_AUTOPILOT_VERSION));
   for (const auto bit : {MAV_PROTOCOL_CAPABILITY_MAVLINK2, MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
-                         MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE}) {
+                         MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE, MAV_PROTOCOL_CAPABILITY_MISSION_INT,
+                         MAV_PROTOCOL_CAPABILITY_MISSION_FENCE, MAV_PROTOCOL_CAPABILITY_MISSION_RALLY}) {
     EXPECT_NE(capabilities & static_cast<std::uint64_t>(bit), 0U);
   }
 }
