@@ -31,6 +31,8 @@ bridge::vehicle::FlightMode bridge_mode(vehicle::FlightMode mode) {
       return bridge::vehicle::FlightMode::kTakeoff;
     case vehicle::FlightMode::kHold:
       return bridge::vehicle::FlightMode::kHold;
+    case vehicle::FlightMode::kMission:
+      return bridge::vehicle::FlightMode::kMission;
     case vehicle::FlightMode::kReturn:
       return bridge::vehicle::FlightMode::kReturn;
     case vehicle::FlightMode::kLand:

@@ -8,7 +8,8 @@
 namespace jink::sim::mavlink {
 namespace {
 
-constexpr float kForce = 21196.0F;  ///< param2 of MAV_CMD_COMPONENT_ARM_DISARM
+constexpr float kForce = 21196.0F;    ///< param2 of MAV_CMD_COMPONENT_ARM_DISARM
+constexpr float kMaxItem = 65535.0F;  ///< of a mission
 constexpr double kMicroseconds = 1e6;
 constexpr float kMaxIntervalUs = 2e9F;              ///< what MESSAGE_INTERVAL can tell
 constexpr double kMaxAltitude = 10000.0;            ///< m, of anything that a command may name
@@ -92,6 +93,9 @@ vehicle::Result MavlinkEndpoint::Impl::execute(MavlinkLink& link, const Command&
       return autopilot_.return_home();
     case MAV_CMD_DO_REPOSITION:
       return reposition(command);
+    case MAV_CMD_MISSION_START:
+      if (!(std::abs(command.param1) <= kMaxItem)) return vehicle::Result::kDenied;  // NaN is not
+      return autopilot_.start_mission(static_cast<int>(command.param1));
     case MAV_CMD_DO_SET_HOME:
       return set_home(command);
     case MAV_CMD_SET_MESSAGE_INTERVAL:

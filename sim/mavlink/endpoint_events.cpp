@@ -44,16 +44,18 @@ constexpr std::uint8_t kSystem = 20;
 constexpr std::uint32_t kPresent = 0x38020C0A;  ///< components, without a ground station's link
 
 /// What the checks find, from the summary of modes to that of components.
-std::vector<WireEvent> checks(bool stream, bool ground_station) {
-  const std::uint32_t modes = stream ? kOtherModes | kModeOffboard : kOtherModes;
+std::vector<WireEvent> checks(std::uint8_t found, bool ground_station) {
+  const bool stream = (found & vehicle::kWithStream) != 0;
+  const bool mission = (found & vehicle::kWithMission) != 0;
+  const std::uint32_t modes = kOtherModes | (stream ? kModeOffboard : 0U) | (mission ? kModeMission : 0U);
   std::vector<WireEvent> events;
   events.push_back(WireEvent(0x01A893E0, 0x88)
                        .byte(0)
-                       .word(stream ? 0U : 1U << kSystem)                          // errors
-                       .word(1U << kRemoteControl)                                 // warnings
-                       .word(modes)                                                // to arm in
-                       .word(modes));                                              // to fly
-  events.push_back(WireEvent(0x0105C2D9, 0x66).word(kModeMission).byte(kSystem));  // no mission
+                       .word(stream ? 0U : 1U << kSystem)  // errors
+                       .word(1U << kRemoteControl)         // warnings
+                       .word(modes)                        // to arm in
+                       .word(modes));                      // to fly
+  if (!mission) events.push_back(WireEvent(0x0105C2D9, 0x66).word(kModeMission).byte(kSystem));
   if (!stream) events.push_back(WireEvent(0x012F1DC7, 0x33).word(kModeOffboard).byte(kSystem));
   events.push_back(WireEvent(0x0106ED29, 0x44).word(kAllModes).byte(kRemoteControl));  // none there
   if (!ground_station) events.push_back(WireEvent(0x0167C97B, 0x66).word(kAllModes).byte(kCommunicationLinks));
@@ -79,7 +81,7 @@ std::vector<WireEvent> on_the_wire(const vehicle::FlightEvent& event, bool groun
     case vehicle::EventKind::kFailsafe:
       return {WireEvent(0x01DEDBD0, 0x42).word(event.intended_mode).byte(event.detail)};
     case vehicle::EventKind::kChecks:
-      return checks(event.detail != 0, ground_station);
+      return checks(event.detail, ground_station);
   }
   return {};
 }

@@ -130,6 +130,7 @@ class MavlinkEndpoint::Impl {
   // endpoint_missions.cpp
   void handle_mission(MavlinkLink& link, const mavlink_message_t& message);
   void update_missions();
+  [[nodiscard]] std::vector<vehicle::MissionItem> flown_mission() const;
   void send_mission_current(MavlinkLink& link);
   static void send_mission_messages(MavlinkLink& link, const std::vector<MissionMessage>& messages);
 
@@ -161,6 +162,10 @@ class MavlinkEndpoint::Impl {
   std::vector<MavlinkLink> links_;
   MissionLists mission_lists_;
   std::vector<MissionProtocol> missions_;  ///< parallel to links_
+  std::size_t told_current_ = 0;           ///< item, by the last MISSION_CURRENT
+  std::optional<std::size_t> told_reached_{};
+  int reached_repeats_ = 0;  ///< of MISSION_ITEM_REACHED, left
+  double next_reached_ = 0.0;
 };
 
 }  // namespace jink::sim::mavlink

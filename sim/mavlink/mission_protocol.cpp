@@ -80,8 +80,7 @@ bool is_fence(std::uint16_t command) {
 }
 
 bool is_polygon(std::uint16_t command) {
-  return command == MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION ||
-         command == MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION;
+  return command == MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION || command == MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION;
 }
 
 MAV_MISSION_RESULT check_command(const ListItem& item) {
@@ -97,7 +96,7 @@ MAV_MISSION_RESULT check_command(const ListItem& item) {
     default:
       if (is_fence(item.command) || item.command == MAV_CMD_NAV_RALLY_POINT) return MAV_MISSION_ERROR;
       return (place ? takes_place(item.command) : takes_no_place(item.command)) ? MAV_MISSION_ACCEPTED
-                                                                               : MAV_MISSION_UNSUPPORTED;
+                                                                                : MAV_MISSION_UNSUPPORTED;
   }
 }
 

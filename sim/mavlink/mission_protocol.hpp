@@ -78,13 +78,13 @@ class MissionProtocol {
   MissionLists* lists_;
   std::uint8_t system_id_;
   State state_ = State::kIdle;
-  std::optional<Peer> peer_{};    ///< of the transfer, or of the last one
-  std::uint8_t type_ = 0;         ///< likewise, MAV_MISSION_TYPE
-  std::uint16_t next_ = 0;        ///< sequence number that is to be sent or received next
-  std::uint16_t count_ = 0;       ///< of items on their way
-  std::vector<ListItem> items_{};  ///< received
+  std::optional<Peer> peer_{};             ///< of the transfer, or of the last one
+  std::uint8_t type_ = 0;                  ///< likewise, MAV_MISSION_TYPE
+  std::uint16_t next_ = 0;                 ///< sequence number that is to be sent or received next
+  std::uint16_t count_ = 0;                ///< of items on their way
+  std::vector<ListItem> items_{};          ///< received
   std::optional<std::uint16_t> marked_{};  ///< of these, as current
-  bool integers_ = true;          ///< the peer speaks MISSION_ITEM_INT
+  bool integers_ = true;                   ///< the peer speaks MISSION_ITEM_INT
   double heard_ = 0.0;
   double sent_ = 0.0;
 

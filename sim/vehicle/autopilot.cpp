@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands, arming and what the autopilot says of itself; autopilot_flight.cpp flies, autopilot_failsafe.cpp decides
 // what becomes of a flight that lacks something, autopilot_faults.cpp holds the faults,
-// autopilot_events.cpp what it says when.
+// autopilot_events.cpp what it says when, autopilot_mission.cpp flies missions.
 #include "sim/vehicle/autopilot.hpp"
 
 #include <cmath>
@@ -111,6 +111,7 @@ void Autopilot::disarm_now() {
   settled_since_.reset();
   battery_acts_at_ = planner::base::kInfinity;
   battery_taken_over_ = home_was_set_ = false;
+  mission_.note_disarmed();
   intended_mode_ = mode_after_disarm_;
   model_.set_motors(Motors::kOff);
 }
@@ -130,11 +131,13 @@ Result Autopilot::set_mode(unsigned main_mode, unsigned sub_mode) {
         return takeoff();
       case FlightMode::kHold:
         return hold();
+      case FlightMode::kMission:
+        return fly_mission();
       case FlightMode::kReturn:
         return return_home();
       case FlightMode::kLand:
         return land();
-      default:  // no mission, nobody to follow, nothing known under that number
+      default:  // nobody to follow, nothing known under that number
         return Result::kTemporarilyRejected;
     }
   }
@@ -236,11 +239,16 @@ bool Autopilot::prearm_ok() const {
   if (is_manual(mode())) return remote_control_;
   if (!position_valid()) return false;
   if (mode() == FlightMode::kOffboard) return stream_live() && (armed_ || !refuses_offboard_);
+  if (mode() == FlightMode::kMission) return mission_.available();
   return armed_ || !forbids_arming(mode());
 }
 
 LandedState Autopilot::landed_state() const {
   if (landed_) return LandedState::kOnGround;
+  if (mode() == FlightMode::kMission) {
+    if (mission_order_.kind == MissionOrder::Kind::kLand) return LandedState::kLanding;
+    return mission_order_.takeoff ? LandedState::kTakeoff : LandedState::kInAir;
+  }
   if (mode() == FlightMode::kTakeoff) return LandedState::kTakeoff;
   return mode() == FlightMode::kLand ? LandedState::kLanding : LandedState::kInAir;
 }

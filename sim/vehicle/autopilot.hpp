@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/vehicle/estimator.hpp"
+#include "sim/vehicle/mission.hpp"
 #include "sim/vehicle/parameters.hpp"
 #include "sim/vehicle/px4_event.hpp"
 #include "sim/vehicle/vehicle_model.hpp"
@@ -24,6 +25,7 @@ enum class FlightMode : std::uint32_t {
   kPosition = 0x00030000,
   kTakeoff = 0x02040000,
   kHold = 0x03040000,
+  kMission = 0x04040000,
   kReturn = 0x05040000,
   kLand = 0x06040000,
   kAcro = 0x00050000,
@@ -110,6 +112,14 @@ class Autopilot {
   /// speed on the way there when they are finite and, the speed, positive.
   Result reposition(const Vec3& position, double yaw = std::numeric_limits<double>::quiet_NaN(),
                     double speed = std::numeric_limits<double>::quiet_NaN());
+  /// MISSION: flies the mission from the item where it is, then holds. Refused when armed without a mission.
+  Result fly_mission();
+  /// PX4's MISSION_START: MISSION from `item` (-1: where it is), armed.
+  Result start_mission(int item);
+  /// As Mission::replace and Mission::set_current.
+  void set_mission(std::vector<MissionItem> items, std::optional<std::size_t> current = std::nullopt);
+  bool set_mission_current(std::size_t item) { return mission_.set_current(item); }
+  [[nodiscard]] const Mission& mission() const { return mission_; }
   Result set_home(const Vec3& position);
   /// A setpoint for OFFBOARD: keeps the stream alive whatever the mode. Refused, and no sign of life, unless each
   /// axis has a position, a velocity or an acceleration and nothing is infinite.
@@ -215,6 +225,8 @@ class Autopilot {
   [[nodiscard]] Setpoint guide_descent(double speed) const;
   [[nodiscard]] Setpoint guide_manual() const;
   [[nodiscard]] Setpoint guide_return();
+  [[nodiscard]] Setpoint guide_mission();
+  [[nodiscard]] MissionView mission_view() const;
   [[nodiscard]] double landing_speed() const;
 
   AutopilotOptions options_;
@@ -232,7 +244,9 @@ class Autopilot {
   Vec3 home_ = Vec3::Zero();
   Vec3 hold_position_ = Vec3::Zero();
   double hold_yaw_ = std::numeric_limits<double>::quiet_NaN();
-  double cruise_speed_ = planner::base::kInfinity;  ///< as asked for on the way; MPC_XY_CRUISE bounds it too
+  double cruise_speed_ = planner::base::kInfinity;  ///< asked for; else MPC_XY_CRUISE
+  Mission mission_;
+  MissionOrder mission_order_;
   double takeoff_height_ = 0.0;
   double armed_at_ = 0.0;
   double ramp_started_ = 0.0;
@@ -258,6 +272,7 @@ class Autopilot {
   bool return_arrived_ = false;
   bool ready_reported_ = false;
   bool stream_reported_ = false;     ///< by the last report of the arming checks
+  bool mission_reported_ = false;    ///< likewise
   bool home_was_set_ = false;        ///< by command, since it was last disarmed
   bool battery_taken_over_ = false;  ///< by a change of mode during its failsafe
   bool remote_control_ = false;      ///< a pilot has used one

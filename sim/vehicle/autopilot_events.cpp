@@ -45,14 +45,17 @@ void Autopilot::emit_failsafe_event(FlightMode mode) {
   if (mode == FlightMode::kHold) emit_event(EventKind::kFailsafe, static_cast<std::uint8_t>(FailsafeAction::kHold));
 }
 
-/// The report names all that is amiss. With anything but the stream amiss it would read otherwise than in the
+/// The report names all that is amiss. With more than stream and mission amiss it would read otherwise than in the
 /// recordings, so that there is none then.
 void Autopilot::watch_checks() {
   const bool as_recorded = ready() && position_valid() && !remote_control_ && !refuses_arming_ && !refuses_offboard_ &&
                            !crashed_ && battery_level() == BatteryLevel::kOk;
-  if (!as_recorded || stream_live() == stream_reported_) return;
+  const bool known = stream_live() == stream_reported_ && mission_.available() == mission_reported_;
+  if (!as_recorded || known) return;
   stream_reported_ = stream_live();
-  emit_event(EventKind::kChecks, stream_reported_ ? 1 : 0);
+  mission_reported_ = mission_.available();
+  emit_event(EventKind::kChecks,
+             static_cast<std::uint8_t>((stream_reported_ ? kWithStream : 0) | (mission_reported_ ? kWithMission : 0)));
 }
 
 }  // namespace jink::sim::vehicle

@@ -18,6 +18,7 @@ void Autopilot::jump_estimate(const Vec3& by) {
   estimator_.jump(by);
   hold_position_ += by;
   takeoff_height_ += by.z();
+  mission_.shift(by);
   if (mode() != FlightMode::kOffboard) model_.shift_setpoints(by);
 }
 
@@ -40,7 +41,7 @@ void Autopilot::reboot() {
   events_.clear();
   last_offboard_.reset();
   intended_mode_ = mode_after_disarm_ = guided_mode_ = FlightMode::kHold;
-  has_flown_ = ready_reported_ = stream_reported_ = false;
+  has_flown_ = ready_reported_ = stream_reported_ = mission_reported_ = false;
   landed_ = model_.on_ground();
   boot_step_ = steps_;
   ++reboots_;

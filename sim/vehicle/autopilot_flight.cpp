@@ -79,16 +79,22 @@ void Autopilot::update_home() {
 }
 
 void Autopilot::enter_active_mode() {
+  if (guided_mode_ == FlightMode::kMission) mission_.pause();
   guided_mode_ = mode();
   hold_position_ = estimated_motion().position + kBrakingTime * estimated_motion().velocity;
   hold_position_.z() = std::max(hold_position_.z(), local_ground());
   hold_yaw_ = std::numeric_limits<double>::quiet_NaN();
   cruise_speed_ = planner::base::kInfinity;
   return_climbed_ = return_arrived_ = false;
+  if (guided_mode_ != FlightMode::kMission || !armed_) return;
+  mission_order_ = {};
+  mission_.begin(mission_view());
+  report(Severity::kInfo, "Executing Mission");
 }
 
 bool Autopilot::takeoff_wanted() const {
   if (mode() == FlightMode::kTakeoff) return true;
+  if (mode() == FlightMode::kMission) return mission_order_.kind == MissionOrder::Kind::kFly;
   if (mode() != FlightMode::kOffboard) return false;
   if (std::isfinite(offboard_.position.z())) return offboard_.position.z() > estimated_motion().position.z();
   if (std::isfinite(offboard_.velocity.z())) return offboard_.velocity.z() > 0.0;
@@ -126,7 +132,8 @@ SpeedBounds Autopilot::bounds() const {
                      .climb = parameters_.real("MPC_Z_VEL_MAX_UP"),
                      .descent = parameters_.real("MPC_Z_VEL_MAX_DN")};
   if (mode() != FlightMode::kOffboard) {
-    result.speed = std::min({result.speed, parameters_.real("MPC_XY_CRUISE"), cruise_speed_});
+    const double cruise = std::isfinite(cruise_speed_) ? cruise_speed_ : parameters_.real("MPC_XY_CRUISE");
+    result.speed = std::min(result.speed, cruise);
   }
   if (phase_ == Phase::kRamp) {
     result.climb = std::min(result.climb, kRampClimb);
@@ -152,6 +159,8 @@ Setpoint Autopilot::guide() {
       return guide_return();
     case FlightMode::kHold:
       return guide_hold();
+    case FlightMode::kMission:
+      return guide_mission();
     default:
       return guide_manual();
   }

@@ -90,6 +90,8 @@ std::string mode_text(const sim::vehicle::Autopilot& autopilot) {
       return "LAND";
     case sim::vehicle::FlightMode::kTakeoff:
       return "TAKEOFF";
+    case sim::vehicle::FlightMode::kMission:
+      return autopilot.armed() ? "MISSION" : "MISSION (disarmed)";
     case sim::vehicle::FlightMode::kReturn:
       return "RETURN";
     default:

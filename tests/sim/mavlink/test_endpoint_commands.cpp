@@ -22,7 +22,7 @@ TEST_F(MavlinkEndpointTest, SetModeIsAnsweredTwiceTheSecondTimeTruly) {
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 6}), (Results{0, 0}));
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 99}), (Results{0, 0}));
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 4, 77}), (Results{0, 1}));
-  EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 4, 4}), (Results{0, 1}));
+  EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, 4, 4}), (Results{0, 1}));  // armed, no mission
   EXPECT_EQ(command(MAV_CMD_DO_SET_MODE, {1, kNan}), (Results{0, 0}));
   EXPECT_TRUE(autopilot.offboard_active());
 }
@@ -36,7 +36,7 @@ TEST_F(MavlinkEndpointTest, TheOldSetModeIsAnsweredOnce) {
   poll();
   EXPECT_EQ(acknowledgements(MAV_CMD_DO_SET_MODE), (Results{0}));
   EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kOffboard);
-  message.custom_mode = 0x04040000;
+  message.custom_mode = 0x4D040000;  // AUTO, and nothing known
   heard.clear();
   tell(mavlink_msg_set_mode_encode_status, message);
   poll();
