@@ -22,7 +22,7 @@ for group in "$@"; do
   lab) packages+=(libompl-dev libpagmo-dev libboost-math-dev gnuplot-nox fonts-dejavu-core) ;;
   test)
     packages+=(libgtest-dev fonts-dejavu-core)
-    requirements+=(tools/requirements-test.txt)
+    requirements+=(tools/requirements-test.txt tools/requirements-clients.txt)
     # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
     command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell)
     ;;
@@ -51,10 +51,12 @@ fi
 
 # Python packages: MAVSDK's C++ core comes in its wheel; pymavlink generates the MAVLink headers.
 for file in "${requirements[@]}"; do
-  installed=.venv/.installed-$(basename "$file")
+  venv=.venv
+  [ "$file" != tools/requirements-clients.txt ] || venv=.venv/clients  # its packages have names that .venv has
+  installed=$venv/.installed-$(basename "$file")
   cmp -s "$file" "$installed" && continue
-  echo "setup: Python packages into .venv: $(grep -v '^#' "$file" | tr '\n' ' ')"
-  [ -x .venv/bin/python ] || /usr/bin/python3 -m venv .venv
-  .venv/bin/pip install -q --disable-pip-version-check -r "$file"
+  echo "setup: Python packages into $venv: $(grep -v '^#' "$file" | tr '\n' ' ')"
+  [ -x $venv/bin/python ] || /usr/bin/python3 -m venv $venv
+  $venv/bin/pip install -q --disable-pip-version-check -r "$file"
   cp "$file" "$installed"
 done

@@ -84,7 +84,7 @@ class MissionProtocol {
   std::uint16_t count_ = 0;                ///< of items on their way
   std::vector<ListItem> items_{};          ///< received
   std::optional<std::uint16_t> marked_{};  ///< of these, as current
-  bool integers_ = true;                   ///< the peer speaks MISSION_ITEM_INT
+  bool integers_ = false;  ///< the peer speaks MISSION_ITEM_INT: not known at first, and PX4 then thinks it does not
   double heard_ = 0.0;
   double sent_ = 0.0;
 

@@ -64,7 +64,8 @@ Setpoint Autopilot::guide_mission() {
     if (!ended && mission_.available()) report(Severity::kInfo, "Mission finished, landed");
     return guide_hold();
   }
-  report(Severity::kInfo, mission_.available() ? "Mission finished, loitering" : "No valid mission available, loitering");
+  report(Severity::kInfo,
+         mission_.available() ? "Mission finished, loitering" : "No valid mission available, loitering");
   const Vec3 place = hold_position_;
   hold();
   hold_position_ = place;

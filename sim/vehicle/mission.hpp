@@ -90,11 +90,11 @@ class Mission {
   std::size_t current_ = 0;
   std::optional<std::size_t> reached_{};
   MissionOrder order_{};
-  Vec3 start_ = Vec3::Zero();        ///< local, where the item was begun
+  Vec3 start_ = Vec3::Zero();         ///< local, where the item was begun
   std::optional<double> climb_to_{};  ///< local height, before anything else
   std::optional<double> there_since_{};
   double speed_ = planner::base::kInfinity;
-  bool fresh_ = false;     ///< the item is yet to be started
+  bool fresh_ = false;       ///< the item is yet to be started
   bool over_place_ = false;  ///< of a landing
   bool active_ = false;      ///< its mode flies
   bool begun_ = false;

@@ -177,7 +177,7 @@ TEST_F(MavlinkEndpointTest, AnswersTimesyncPingAndMissionRequests) {
   EXPECT_EQ(mavlink_msg_ping_get_seq(&last(MAVLINK_MSG_ID_PING)), 77U);
   EXPECT_EQ(mavlink_msg_ping_get_target_system(&last(MAVLINK_MSG_ID_PING)), kClientSystem);
   EXPECT_EQ(mavlink_msg_mission_count_get_count(&last(MAVLINK_MSG_ID_MISSION_COUNT)), 0);
-  EXPECT_EQ(mavlink_msg_mission_request_int_get_seq(&last(MAVLINK_MSG_ID_MISSION_REQUEST_INT)), 0);
+  EXPECT_EQ(mavlink_msg_mission_request_get_seq(&last(MAVLINK_MSG_ID_MISSION_REQUEST)), 0);
 }
 
 }  // namespace

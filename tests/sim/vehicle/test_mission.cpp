@@ -49,9 +49,7 @@ class MissionFlight : public Flight {
   double fly_to_the_end(double limit = 120.0) {
     return fly_until([&] { return autopilot.mode() != FlightMode::kMission || !autopilot.armed(); }, limit);
   }
-  [[nodiscard]] double distance(const Vec3& place) const {
-    return (autopilot.true_motion().position - place).norm();
-  }
+  [[nodiscard]] double distance(const Vec3& place) const { return (autopilot.true_motion().position - place).norm(); }
 
   std::vector<std::size_t> reached;
   double fastest = 0.0;
@@ -74,8 +72,7 @@ TEST(Mission, TakesOffFliesItsWaypointsAndHoldsAtTheEnd) {
   EXPECT_LT(flight.distance({10, 8, 5}), 0.2);
   EXPECT_TRUE(flight.said("Executing Mission"));
   EXPECT_TRUE(flight.said("Mission finished, loitering"));
-  EXPECT_EQ(flight.landed_states,
-            (std::vector{LandedState::kOnGround, LandedState::kTakeoff, LandedState::kInAir}));
+  EXPECT_EQ(flight.landed_states, (std::vector{LandedState::kOnGround, LandedState::kTakeoff, LandedState::kInAir}));
 }
 
 TEST(Mission, ClimbsFirstWithoutATakeoffItem) {
@@ -147,8 +144,7 @@ TEST(Mission, KeepsToTheSpeedOfItsItems) {
 TEST(Mission, JumpsBackAsOftenAsItSays) {
   MissionItem back = item(Kind::kJump);
   back.repeats = 2;
-  MissionFlight flight(airborne_options(),
-                       {item(Kind::kWaypoint, {5, 0, 3}), item(Kind::kWaypoint, {0, 0, 3}), back});
+  MissionFlight flight(airborne_options(), {item(Kind::kWaypoint, {5, 0, 3}), item(Kind::kWaypoint, {0, 0, 3}), back});
   ASSERT_EQ(flight.autopilot.fly_mission(), Result::kAccepted);
   flight.fly_to_the_end();
   EXPECT_EQ(flight.reached, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
