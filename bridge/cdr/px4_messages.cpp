@@ -71,8 +71,8 @@ void take_heading(CdrInput& input, Layout layout, LocalPosition& message) {
   message.heading = take_float(input);
   skip_floats(input, layout == Layout::kUnversioned ? 2 : 3);  // (heading_var), unaided_heading, delta_heading
   input.take<std::uint8_t>();                                  // heading_reset_counter
-  message.heading_good = input.take<bool>();
-  if (layout != Layout::kUnversioned) skip_floats(input, 1);  // tilt_var
+  input.take<bool>();                                          // heading_good_for_control
+  if (layout != Layout::kUnversioned) skip_floats(input, 1);   // tilt_var
 }
 
 void take_origin(CdrInput& input, LocalPosition& message) {
@@ -108,7 +108,6 @@ bool valid(const LocalPosition& m) {
 // Each comparison is false for NaN. An estimate that is not marked as valid may be anything.
 bool sane(const LocalPosition& m) {
   if (valid(m) && !(m.position_ned.norm() <= kMaxPosition && m.velocity_ned.norm() <= kMaxSpeed)) return false;
-  if (m.heading_good && !std::isfinite(m.heading)) return false;
   if (!m.global) return true;
   return std::abs(m.origin.latitude_deg) <= 90.0 && std::abs(m.origin.longitude_deg) <= 180.0 &&
          std::isfinite(m.origin.altitude_m);
@@ -170,10 +169,10 @@ void LocalPositionFilter::apply(vehicle::VehicleState& state, double now) const 
     if (std::isfinite(valid_->heading)) state.yaw = frames::yaw_enu_from_heading(valid_->heading);
   }
   const bool held = valid_ && now - valid_at_ <= kMaxAge_s && valid(*newest_);
-  state.local_position_ok = held && valid_->heading_good;
+  state.local_position_ok = held && std::isfinite(valid_->heading);
   if (!held) {
     add(state.health, "local position");
-  } else if (!valid_->heading_good) {
+  } else if (!state.local_position_ok) {
     add(state.health, "heading");
   }
   if (held && valid_->dead_reckoning) add(state.health, "dead reckoning");

@@ -23,8 +23,7 @@ struct LocalPosition {
   Vec3 shift_ned = Vec3::Zero();  ///< of the newest reset of each counter: delta_xy, delta_z
   std::uint8_t xy_resets = 0;     ///< counters that wrap
   std::uint8_t z_resets = 0;
-  double heading = 0.0;  ///< clockwise from north
-  bool heading_good = false;
+  double heading = 0.0;  ///< clockwise from north; NaN: not known
   bool dead_reckoning = false;
   bool global = false;  ///< xy_global and z_global: the local frame's origin is known
   frames::Geodetic origin;
@@ -43,7 +42,8 @@ class LocalPositionFilter {
   static constexpr double kMaxAge_s = 1.0;
 
   /// Takes one message in, received at `now`. False, and nothing is taken, where a value that is marked as valid is not
-  /// finite or absurd (position beyond 1e5 m, speed beyond 1e3 m/s).
+  /// finite or absurd (position beyond 1e5 m, speed beyond 1e3 m/s). heading_good_for_control says nothing of that: PX4
+  /// holds it false until the yaw was aligned in flight, above 1.5 m, and arms and flies OFFBOARD without it.
   ///
   /// The position's stamp advances only with position and velocity all valid. A reset counter that advances by one
   /// tells of a jump of the message's own delta; one that advances by more (messages were lost, the autopilot was

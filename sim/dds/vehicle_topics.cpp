@@ -42,7 +42,7 @@ std::optional<vehicle::Setpoint> setpoint_of(const WireSetpoint& wire, const Wir
   return setpoint;
 }
 
-WirePosition position_of(const vehicle::Autopilot& autopilot, const EstimateJumps& jumps) {
+WirePosition position_of(const vehicle::Autopilot& autopilot, const EstimateJumps& jumps, bool yaw_aligned) {
   const vehicle::Motion& motion = autopilot.estimated_motion();
   const Vec3 p = bridge::frames::ned_from_enu(motion.position);
   const Vec3 v = bridge::frames::ned_from_enu(motion.velocity);
@@ -73,7 +73,7 @@ WirePosition position_of(const vehicle::Autopilot& autopilot, const EstimateJump
   wire.az(to_float(a.z()));
   wire.heading(to_float(bridge::frames::heading_from_yaw_enu(motion.yaw)));
   wire.unaided_heading(kNaN);
-  wire.heading_good_for_control(valid);
+  wire.heading_good_for_control(valid && yaw_aligned);
   wire.xy_global(valid);
   wire.z_global(valid);
   const bridge::frames::Geodetic origin =
@@ -101,6 +101,13 @@ const EstimateJumps& EstimateJumpDetector::update(std::uint8_t counter, const ve
   return jumps_;
 }
 
+bool YawAlignment::update(double now, bool landed, double height) {
+  if (landed_ && !landed) climbed_at_.reset();
+  landed_ = landed;
+  if (!landed && !climbed_at_ && height > kHeight) climbed_at_ = now;
+  return climbed_at_ && now - *climbed_at_ > kSettling_s;
+}
+
 class VehicleTopics::Impl {
  public:
   Impl(bridge::dds::DdsParticipant& node, const std::string& name_space)
@@ -113,9 +120,11 @@ class VehicleTopics::Impl {
 
   void step(double now, vehicle::Autopilot& autopilot, const EstimateJumps& jumps) {
     take_orders(now, autopilot);
+    const double height = autopilot.estimated_motion().position.z() - autopilot.local_ground();
+    const bool yaw_aligned = yaw_.update(now, autopilot.landed(), height);
     if (now < next_position_) return;
     next_position_ = std::max(next_position_ + 1.0 / kPositionRate_hz, now);
-    if (!positions_.write_message(position_of(autopilot, jumps))) {
+    if (!positions_.write_message(position_of(autopilot, jumps, yaw_aligned))) {
       autopilot.report(vehicle::Severity::kWarning, "DDS: a position could not be published");
     }
   }
@@ -171,6 +180,7 @@ class VehicleTopics::Impl {
   Newest<WireSetpoint> setpoint_;
   std::atomic<std::uint64_t> malformed_ = 0;
 
+  YawAlignment yaw_;
   double next_position_ = 0.0;
   std::optional<double> mode_came_;
   bool any_setpoint_ = false;

@@ -32,6 +32,21 @@ class EstimateJumpDetector {
   std::optional<Vec3> position_;  // the one before
 };
 
+/// When VehicleLocalPosition.heading_good_for_control holds: PX4's EKF2 aligns the yaw anew in each flight, once it is
+/// clear of what disturbs the compass on the ground. Not thread-safe.
+class YawAlignment {
+ public:
+  static constexpr double kHeight = 1.5;      ///< m above the ground, PX4's mag_anomalies_max_hagl
+  static constexpr double kSettling_s = 1.0;  ///< after the alignment, as there
+
+  /// `height` above the ground at `now`; true where the yaw is aligned, also on the ground afterwards.
+  bool update(double now, bool landed, double height);
+
+ private:
+  bool landed_ = true;
+  std::optional<double> climbed_at_;
+};
+
 /// Publishes VehicleLocalPosition (version 1, vehicle_local_position_v1, best effort, transient local) and takes
 /// TrajectorySetpoint and OffboardControlMode (best effort, volatile). The mode is what keeps offboard alive: each one
 /// renews the newest setpoint, and setpoints without a mode in the last kModeTimeout_s are left alone. Of the modes

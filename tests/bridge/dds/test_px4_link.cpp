@@ -116,7 +116,6 @@ void expect_is_the_position(const std::optional<LocalPosition>& m) {
   EXPECT_EQ(m->xy_resets, 3);
   EXPECT_EQ(m->z_resets, 7);
   EXPECT_NEAR(m->heading, std::numbers::pi / 2, 1e-6);
-  EXPECT_TRUE(m->heading_good);
   EXPECT_TRUE(m->global);
   EXPECT_EQ(m->origin, (frames::Geodetic{47.397743, 8.545594, 489.5}));
   EXPECT_TRUE(m->dead_reckoning);
@@ -160,7 +159,7 @@ TEST(Px4LocalPosition, IsNothingWithABooleanThatIsNone) {
 
 LocalPosition valid_position() {
   LocalPosition m;
-  m.xy_valid = m.z_valid = m.v_xy_valid = m.v_z_valid = m.heading_good = true;
+  m.xy_valid = m.z_valid = m.v_xy_valid = m.v_z_valid = true;
   return m;
 }
 
@@ -207,7 +206,6 @@ TEST(Px4LocalPositionFilter, LetsTheStampAgeWhereAnythingIsNotValid) {
 TEST(Px4LocalPositionFilter, SaysWhatIsMissing) {
   LocalPositionFilter filter;
   LocalPosition m = valid_position();
-  m.heading_good = false;
   m.heading = kNaN;
   ASSERT_TRUE(filter.update(m, 1.0));
   EXPECT_FALSE(state_of(filter, 1.0).local_position_ok);
@@ -220,19 +218,30 @@ TEST(Px4LocalPositionFilter, SaysWhatIsMissing) {
   EXPECT_FALSE(state_of(filter, 2.01 + LocalPositionFilter::kMaxAge_s).local_position_ok);
 }
 
+// As on the ground, before the yaw was aligned in flight.
+TEST(Px4LocalPositionFilter, HoldsAPositionWhoseHeadingIsNotGoodForControl) {
+  WirePosition wire = wire_position();
+  wire.heading_good_for_control(false);
+  wire.dead_reckoning(false);
+  LocalPositionFilter filter;
+  ASSERT_TRUE(filter.update(*decode_local_position(new_payload(wire)), 1.0));
+  EXPECT_TRUE(state_of(filter, 1.0).local_position_ok);
+  EXPECT_EQ(state_of(filter, 1.0).health, "");
+  EXPECT_NEAR(state_of(filter, 1.0).yaw, 0.0, 1e-6);
+}
+
 TEST(Px4LocalPositionFilter, RefusesValuesThatCannotBe) {
   LocalPositionFilter filter;
   ASSERT_TRUE(filter.update(valid_position(), 1.0));
-  std::vector<LocalPosition> bad(7, valid_position());
+  std::vector<LocalPosition> bad(6, valid_position());
   bad[0].position_ned.y() = kNaN;
   bad[1].position_ned.x() = 2e5;
   bad[2].velocity_ned.z() = std::numeric_limits<double>::infinity();
   bad[3].velocity_ned.x() = -1001.0;
-  bad[4].heading = kNaN;
+  bad[4].global = true;
+  bad[4].origin.latitude_deg = 91.0;
   bad[5].global = true;
-  bad[5].origin.latitude_deg = 91.0;
-  bad[6].global = true;
-  bad[6].origin.altitude_m = kNaN;
+  bad[5].origin.altitude_m = kNaN;
   for (const LocalPosition& m : bad) EXPECT_FALSE(filter.update(m, 2.0));
   EXPECT_EQ(state_of(filter, 2.0).motion.stamp, 1.0);
 }

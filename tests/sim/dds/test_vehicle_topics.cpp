@@ -42,6 +42,18 @@ TEST(EstimateJumpDetector, TellsAJumpFromMotion) {
   EXPECT_EQ(watch.update(0, motion, 0.1).newest, jumps.newest);
 }
 
+TEST(YawAlignment, IsDoneAnewInEachFlightAboveTheGroundsMagnets) {
+  YawAlignment yaw;
+  EXPECT_FALSE(yaw.update(0.0, true, 0.0));
+  EXPECT_FALSE(yaw.update(1.0, true, 3.0));  // a height that is not flown
+  EXPECT_FALSE(yaw.update(2.0, false, 1.5));
+  EXPECT_FALSE(yaw.update(3.0, false, 1.6));
+  EXPECT_FALSE(yaw.update(4.0, false, 1.0));
+  EXPECT_TRUE(yaw.update(4.1, false, 1.0));
+  EXPECT_TRUE(yaw.update(5.0, true, 0.0));
+  EXPECT_FALSE(yaw.update(6.0, false, 1.0));
+}
+
 class NoLink final : public bridge::vehicle::VehicleLink {
  public:
   VehicleState state() override { return {}; }
