@@ -101,7 +101,7 @@ void inspect_traffic(const config::Mission& mission, const LinkFindings& heard, 
   for (std::size_t i = 0; i < std::min(needed, heard.rates.size()); ++i) {
     checks.push_back(inspect_rate(heard.rates[i], i));
   }
-  Check round_trip{Level::kWarning, "round trip", "no answer to TIMESYNC", "check that messages reach the autopilot"};
+  Check round_trip{Level::kWarning, "round trip", "no answer to PING", "check that messages reach the autopilot"};
   if (heard.info.round_trip_s) {
     const bool slow = *heard.info.round_trip_s > kLongRoundTrip_s;
     round_trip = {slow ? Level::kWarning : Level::kOk, "round trip",

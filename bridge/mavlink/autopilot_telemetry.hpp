@@ -38,7 +38,7 @@ struct LinkInfo {
   std::optional<std::uint32_t> estimator;        ///< ESTIMATOR_STATUS.flags
   std::optional<double> battery_percent;         ///< SYS_STATUS.battery_remaining
   bool rc_receiver = false;                      ///< SYS_STATUS: present and healthy
-  std::optional<double> round_trip_s;            ///< the shortest TIMESYNC answer; asked once a second
+  std::optional<double> round_trip_s;            ///< the shortest answer to PING; asked once a second
   std::vector<std::uint32_t> other_systems;      ///< system ids of LinkCounts::other_autopilots
 };
 

@@ -152,8 +152,8 @@ bool read(const json& fields, AutopilotVersion& message) {
   return read(fields, "flight_sw_version", message.flight_sw_version);
 }
 
-bool read(const json& fields, Timesync& message) {
-  return read(fields, "tc1", message.tc1_ns) && read(fields, "ts1", message.ts1_ns);
+bool read(const json& fields, Ping& message) {
+  return read(fields, "time_usec", message.time_us) && read(fields, "target_system", message.target_system);
 }
 
 bool read(const json& fields, ParamValue& message) {
@@ -203,7 +203,7 @@ constexpr std::array<std::pair<std::string_view, Decoder>, std::variant_size_v<M
     {"GPS_GLOBAL_ORIGIN", decode_as<Origin>},
     {"COMMAND_ACK", decode_as<CommandAck>},
     {"AUTOPILOT_VERSION", decode_as<AutopilotVersion>},
-    {"TIMESYNC", decode_as<Timesync>},
+    {"PING", decode_as<Ping>},
     {"PARAM_VALUE", decode_as<ParamValue>},
     {"STATUSTEXT", decode_as<StatusText>},
     {"ADSB_VEHICLE", decode_as<AdsbReport>},

@@ -76,10 +76,10 @@ struct CommandAck {
 struct AutopilotVersion {
   std::uint32_t flight_sw_version = 0;
 };
-/// tc1 is the autopilot's time, ts1 ours as we sent it; its own requests have tc1 = 0.
-struct Timesync {
-  std::int64_t tc1_ns = 0;
-  std::int64_t ts1_ns = 0;
+/// An answer carries our own time and the target that we are; a request has the target 0.
+struct Ping {
+  std::int64_t time_us = 0;
+  std::uint32_t target_system = 0;
 };
 struct ParamValue {
   std::string name;
@@ -96,7 +96,7 @@ struct StatusText {
 /// AdsbReport: its time and sender are the caller's to fill in.
 using Message =
     std::variant<Heartbeat, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState, EstimatorStatus,
-                 BatteryStatus, Origin, CommandAck, AutopilotVersion, Timesync, ParamValue, StatusText, AdsbReport>;
+                 BatteryStatus, Origin, CommandAck, AutopilotVersion, Ping, ParamValue, StatusText, AdsbReport>;
 
 /// Decodes the message `name` (MAVLink's name) from `json`, an object with a member for each field. Nothing where the
 /// name is none of these, the text is no such object, or a field that matters is missing, not finite or beyond Limits.

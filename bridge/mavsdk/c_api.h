@@ -37,7 +37,7 @@ enum { MAVSDK_MAVLINK_DIRECT_RESULT_SUCCESS = 1 };
 enum { MAVSDK_LOG_LEVEL_WARN = 2 };
 
 /* A MAVLink message by name, its fields as a JSON object. The target_ members are filled on reception; on sending the
- * target is what the fields say. */
+ * target is what the fields say where these are 0. */
 typedef struct {
   const char* message_name;
   uint32_t system_id;

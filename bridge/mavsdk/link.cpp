@@ -123,7 +123,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
                                                             {"GPS_GLOBAL_ORIGIN"},
                                                             {"COMMAND_ACK"},
                                                             {"AUTOPILOT_VERSION"},
-                                                            {"TIMESYNC"},
+                                                            {"PING"},
                                                             {"PARAM_VALUE"},
                                                             {"STATUSTEXT"},
                                                             {"ADSB_VEHICLE", From::kAnyComponent}}};
@@ -161,8 +161,7 @@ void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
 
 bool MavsdkLink::Impl::transmit(const char* name, const json& fields) const {
   const std::string text = fields.dump();
-  const mavsdk_mavlink_message_t message{name,       own_system_id_,      own_component_id_,
-                                         system_id_, kAutopilotComponent, text.c_str()};
+  const mavsdk_mavlink_message_t message{name, own_system_id_, own_component_id_, 0, 0, text.c_str()};
   return mavsdk_mavlink_direct_send_message(autopilot_->direct(), message) == MAVSDK_MAVLINK_DIRECT_RESULT_SUCCESS;
 }
 

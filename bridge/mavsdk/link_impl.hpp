@@ -109,7 +109,7 @@ class MavsdkLink::Impl {
   void on(double now, const Sender& sender, const mavlink::Attitude& message);
   void on(double now, const Sender& sender, const mavlink::Odometry& message);
   void on(double now, const Sender& sender, const mavlink::CommandAck& message);
-  void on(double now, const Sender& sender, const mavlink::Timesync& message);
+  void on(double now, const Sender& sender, const mavlink::Ping& message);
   void on(double now, const Sender& sender, const mavlink::ParamValue& message);
   void on(double now, const Sender& sender, const mavlink::AdsbReport& message);
   template <typename Other>  // what the state of the autopilot alone takes in
@@ -139,7 +139,7 @@ class MavsdkLink::Impl {
   std::deque<mavlink::AdsbReport> adsb_;
   std::uint64_t dropped_adsb_ = 0;
   std::map<std::string, vehicle::px4::Parameter> parameters_;  // answers to the request under way
-  std::int64_t timesync_sent_ns_ = 0;
+  std::int64_t ping_sent_us_ = 0;
   std::optional<double> round_trip_s_;
   vehicle::CommandTracker commands_;
   std::condition_variable_any parameter_came_;

@@ -81,6 +81,7 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
   std::array<bool, kStreams> slow{};
   bool want_origin = false;
   bool want_version = false;
+  const auto ping_us = static_cast<std::int64_t>(now * 1e6);
   {
     const std::scoped_lock lock(mutex_);
     const double before = telemetry_.heartbeat_stamp();
@@ -94,16 +95,15 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     at_heartbeat_ = heard_;
     want_origin = !telemetry_.origin_known();
     want_version = !telemetry_.info().version;
-    timesync_sent_ns_ = static_cast<std::int64_t>(now * 1e9);
+    ping_sent_us_ = ping_us;
   }
   if (!ready_) return;
   request_streams(slow);
   if (want_origin) (void)transmit(vehicle::px4::request_message(kMessageOrigin));
   if (want_version) (void)transmit(vehicle::px4::request_message(kMessageVersion));
-  (void)transmit("TIMESYNC", {{"tc1", 0},
-                              {"ts1", static_cast<std::int64_t>(now * 1e9)},
-                              {"target_system", system_id_},
-                              {"target_component", sender.component}});
+  // Not by TIMESYNC: PX4 leaves the target of its answers to chance, and MAVSDK keeps what is meant for others to
+  // itself.
+  (void)transmit("PING", {{"time_usec", ping_us}, {"seq", 0}, {"target_system", 0}, {"target_component", 0}});
 }
 
 void MavsdkLink::Impl::on_other_heartbeat(const Sender& sender, const mavlink::Heartbeat& message) {
@@ -140,10 +140,10 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::C
   if (ours) commands_.acknowledge(message.command, message.result, now);
 }
 
-void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Timesync& message) {
+void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Ping& message) {
   const std::scoped_lock lock(mutex_);
-  if (message.tc1_ns == 0 || message.ts1_ns != timesync_sent_ns_) return;
-  const double round_trip_s = std::max(0.0, now - static_cast<double>(message.ts1_ns) * 1e-9);
+  if (message.target_system == 0 || message.time_us != ping_sent_us_) return;
+  const double round_trip_s = std::max(0.0, now - static_cast<double>(message.time_us) * 1e-6);
   round_trip_s_ = std::min(round_trip_s_.value_or(round_trip_s), round_trip_s);
 }
 

@@ -3,6 +3,7 @@
 #include "sim/mavlink/endpoint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -27,6 +28,19 @@ constexpr std::size_t kTextChunk = 50;     ///< characters that STATUSTEXT holds
 /// A MAVLink name: at most `size` characters, without a terminating zero when it fills the field.
 std::string field_text(const char* field, std::size_t size) {
   return {field, strnlen(field, size)};
+}
+
+/// With a target, which the generated function does not know. PX4 leaves it to what lay in memory: it is nobody.
+std::uint16_t encode_timesync_answer(std::uint8_t system, std::uint8_t component, mavlink_status_t* status,
+                                     mavlink_message_t* message, const mavlink_timesync_t* answer) {
+  constexpr std::array<std::uint8_t, 2> kStrayTarget{0xa0, 0x20};  // as recorded
+  char* const payload = _MAV_PAYLOAD_NON_CONST(message);
+  std::memcpy(payload, answer, MAVLINK_MSG_ID_TIMESYNC_LEN);
+  std::memcpy(payload + MAVLINK_MSG_ID_TIMESYNC_LEN, kStrayTarget.data(), kStrayTarget.size());
+  message->msgid = MAVLINK_MSG_ID_TIMESYNC;
+  return mavlink_finalize_message_buffer(message, system, component, status, MAVLINK_MSG_ID_TIMESYNC_MIN_LEN,
+                                         MAVLINK_MSG_ID_TIMESYNC_LEN + kStrayTarget.size(),
+                                         MAVLINK_MSG_ID_TIMESYNC_CRC);
 }
 
 const EndpointOptions& checked(const EndpointOptions& options) {
@@ -294,7 +308,7 @@ void MavlinkEndpoint::Impl::handle_timesync(MavlinkLink& link, const mavlink_mes
   mavlink_timesync_t reply{};
   reply.tc1 = static_cast<std::int64_t>(boot_us()) * 1000;
   reply.ts1 = request.ts1;
-  link.send(mavlink_msg_timesync_encode_status, reply);
+  link.send(encode_timesync_answer, reply);
 }
 
 void MavlinkEndpoint::Impl::handle_ping(MavlinkLink& link, const mavlink_message_t& message) {

@@ -92,7 +92,7 @@ TEST(MavlinkMessages, WhatIsMissingNotFiniteOrAbsurdIsRefused) {
       {"BATTERY_STATUS", R"({"id":256})"},
       {"PARAM_VALUE", R"({"param_id":"","param_type":9,"param_value":1})"},
       {"PARAM_VALUE", R"({"param_id":"A","param_type":6,"param_value":1e300})"},
-      {"TIMESYNC", R"({"tc1":1.5,"ts1":1})"},
+      {"PING", R"({"time_usec":1.5,"target_system":1})"},
       {"STATUSTEXT", R"({"text":"no severity"})"}};
   for (const auto& [name, json] : bad) EXPECT_FALSE(decode(name, json)) << name << ' ' << json;
 }

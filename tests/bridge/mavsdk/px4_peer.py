@@ -174,8 +174,9 @@ class Peer:
             elif kind == "HEARTBEAT":
                 self.say(type="heartbeat", vehicle_type=message.type,
                          source=[message.get_srcSystem(), message.get_srcComponent()])
-            elif kind == "TIMESYNC" and message.tc1 == 0:
-                self.link.mav.timesync_send(int(time.monotonic() * 1e9), message.ts1)
+            elif kind == "PING" and message.target_system == 0:
+                self.link.mav.ping_send(message.time_usec, message.seq, message.get_srcSystem(),
+                                        message.get_srcComponent())
             elif kind == "PARAM_REQUEST_READ":
                 self.parameter(message.param_id)
             elif kind == "SET_POSITION_TARGET_LOCAL_NED":

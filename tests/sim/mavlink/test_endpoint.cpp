@@ -173,6 +173,7 @@ TEST_F(MavlinkEndpointTest, AnswersTimesyncPingAndMissionRequests) {
   const auto first = std::find_if(heard.begin(), heard.end(), [](const auto& m) { return m.msgid == 111; });
   mavlink_msg_timesync_decode(&*first, &answer);
   EXPECT_EQ(answer.ts1, 123456789);
+  EXPECT_EQ(first->len, MAVLINK_MSG_ID_TIMESYNC_LEN + 2);  // with a target, which PX4 leaves to chance
   EXPECT_NEAR(static_cast<double>(answer.tc1) * 1e-9, autopilot.time(), 1e-6);
   EXPECT_EQ(mavlink_msg_ping_get_seq(&last(MAVLINK_MSG_ID_PING)), 77U);
   EXPECT_EQ(mavlink_msg_ping_get_target_system(&last(MAVLINK_MSG_ID_PING)), kClientSystem);
