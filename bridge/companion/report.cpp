@@ -38,6 +38,7 @@ void FlightReporter::event(double now, std::string_view name, const std::string&
 }
 
 void FlightReporter::state(double now, const vehicle::VehicleState& state) {
+  if (state.motion.heard()) summary_.end_estimate = state.motion.value.position;
   for (FlightObserver* observer : observers_) observer->on_state(now, state);
 }
 

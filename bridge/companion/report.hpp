@@ -53,6 +53,7 @@ struct FlightSummary {
   double max_speed = 0.0;
   double largest_tracking_error = 0.0;  ///< distance from the reference
   double largest_margin = 0.0;          ///< that the planner was asked for
+  std::optional<Vec3> end_estimate;     ///< newest position told; its height drifts and is none above the ground
   std::uint64_t estimate_resets = 0;    ///< jumps of the autopilot's position estimate, by which the plan was shifted
   std::vector<HazardRecord> hazards;
   std::uint64_t plans = 0;

@@ -5,6 +5,7 @@
 """
 
 import math
+import re
 
 from flight import CONFIG, Arena, check, interrupt, main, wait
 
@@ -22,6 +23,10 @@ def test(jink, instance, scenario, mission):
 
         flown = arena.read("fly.json")
         check(flown["format"] == "jink-flight/1" and flown["outcome"] == "reached", f"fly: {flown['outcome']}")
+        z = flown["end_estimate"][2]
+        printed = (arena.folder / "fly.txt").read_text()
+        check(f"{z:.1f}) m by the autopilot's estimate; z is no height above ground" in printed, f"z {z:.2f} m is the estimate's")
+        check(not re.search(r"height -?\d", printed), "and nothing printed claims a height")
         check(flown["min_clearance"] is None, "fly does not claim to know the true clearance")
         check(flown["plans"] > 10 and flown["plan_ms"]["p99"] > 0.0, f"{flown['plans']} plans were made")
 

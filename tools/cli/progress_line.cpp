@@ -18,7 +18,7 @@ std::string progress_text(const ProgressStatus& s) {
   if (s.nearest && !std::isfinite(*s.nearest)) text += "  nothing near";
   if (s.plan_ms) text += fmt::format("  plan {:.0f} ms", *s.plan_ms);
   if (s.speed) text += fmt::format("  {:.1f} m/s", *s.speed);
-  if (s.height) text += fmt::format("  height {:.1f} m", *s.height);
+  if (s.height) text += fmt::format("  z {:.1f} m estimated", *s.height);
   if (s.tracks) text += fmt::format("  {} track{}", *s.tracks, *s.tracks == 1 ? "" : "s");
   return text;
 }

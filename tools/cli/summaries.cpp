@@ -74,6 +74,7 @@ Json flight_summary(const std::string& kind, const std::string& name, std::uint6
   summary["max_tracking_error"] = flight.largest_tracking_error;
   summary["max_margin"] = flight.largest_margin;
   summary["estimate_resets"] = flight.estimate_resets;
+  summary["end_estimate"] = flight.end_estimate ? log::vector_json(*flight.end_estimate) : Json(nullptr);
   summary["hazards"] = Json::array();
   for (const bridge::companion::HazardRecord& hazard : flight.hazards)
     summary["hazards"].push_back({{"what", hazard.what}, {"t", hazard.t}, {"duration_s", hazard.duration}});
@@ -109,6 +110,10 @@ std::string describe_flight(const Json& s) {
                       s["deadline_misses"].get<std::uint64_t>(), number(s["plan_ms"]["p50"], "ms"),
                       number(s["plan_ms"]["p99"], "ms"), number(s["track_to_setpoint_ms"]["p50"], "ms"),
                       number(s["track_to_setpoint_ms"]["p99"], "ms"));
+  if (s["end_estimate"].is_array())
+    text += fmt::format(
+        "\n  in the end at ({:.1f}, {:.1f}, {:.1f}) m by the autopilot's estimate; z is no height above ground",
+        s["end_estimate"][0].get<double>(), s["end_estimate"][1].get<double>(), s["end_estimate"][2].get<double>());
   if (s.contains("vehicles")) {
     for (const Json& vehicle : s["vehicles"])
       text += fmt::format("\n  vehicle {}: {} after {}, smallest clearance {}", vehicle["vehicle"].get<int>(),

@@ -26,7 +26,7 @@ TEST(LiveText, TellsWhatIsKnownAndNoMore) {
   status.stale = {"tracks 1.4 s old", "position 0.6 s old"};
   EXPECT_EQ(progress_text(status),
             "[  12.3 s] offboard  ! tracks 1.4 s old, position 0.6 s old  62 %  7.7 m to go  nearest 2.1 m  plan 12 ms"
-            "  3.0 m/s  height 1.5 m  1 track");
+            "  3.0 m/s  z 1.5 m estimated  1 track");
 }
 
 /// A flight over two waypoints, 10 m to the first and 5 m on from there; what is printed goes to standard output.
