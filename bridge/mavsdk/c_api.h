@@ -56,10 +56,13 @@ void mavsdk_log_subscribe(mavsdk_log_callback_t callback, void* user_data);
 mavsdk_configuration_t mavsdk_configuration_create_with_component_type(int component_type);
 void mavsdk_configuration_destroy(mavsdk_configuration_t configuration);
 uint32_t mavsdk_configuration_get_system_id(mavsdk_configuration_t configuration);
-uint8_t mavsdk_configuration_get_component_id(mavsdk_configuration_t configuration);
+void mavsdk_configuration_set_system_id(mavsdk_configuration_t configuration, uint32_t system_id);
+void mavsdk_configuration_set_component_id(mavsdk_configuration_t configuration, uint8_t component_id);
 
 mavsdk_t mavsdk_create(mavsdk_configuration_t configuration);
 void mavsdk_destroy(mavsdk_t mavsdk);
+/* Also while it runs: what goes out from then on, the heartbeat too, has these ids. */
+void mavsdk_set_configuration(mavsdk_t mavsdk, mavsdk_configuration_t configuration);
 int mavsdk_add_any_connection(mavsdk_t mavsdk, const char* connection_url);
 /* Blocks for timeout_s at most; null when no autopilot was heard. */
 mavsdk_system_t mavsdk_first_autopilot(mavsdk_t mavsdk, double timeout_s);

@@ -79,11 +79,10 @@ void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, vo
 
 MavsdkLink::Impl::Impl(const std::string& url, const base::Clock& clock) : clock_(clock), created_(clock.now()) {
   capture_mavsdk_log();
-  const ConfigurationHandle configuration(
-      mavsdk_configuration_create_with_component_type(MAVSDK_COMPONENT_TYPE_COMPANION_COMPUTER));
-  own_system_id_ = mavsdk_configuration_get_system_id(configuration.get());
-  own_component_id_ = mavsdk_configuration_get_component_id(configuration.get());
-  mavsdk_.reset(mavsdk_create(configuration.get()));
+  configuration_.reset(mavsdk_configuration_create_with_component_type(MAVSDK_COMPONENT_TYPE_COMPANION_COMPUTER));
+  mavsdk_configuration_set_component_id(configuration_.get(), kOwnComponent);
+  own_system_id_ = mavsdk_configuration_get_system_id(configuration_.get());
+  mavsdk_.reset(mavsdk_create(configuration_.get()));
   (void)take_mavsdk_warning();
   const int result = mavsdk_add_any_connection(mavsdk_.get(), url.c_str());
   if (result == MAVSDK_CONNECTION_RESULT_SUCCESS) return;
@@ -112,6 +111,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
     if (found) {
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
+      join_system();
       static constexpr std::array<Interest, 15> kInterests{{{"HEARTBEAT"},
                                                             {"LOCAL_POSITION_NED"},
                                                             {"ATTITUDE"},
@@ -138,6 +138,13 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
   return ready_;
 }
 
+// As a component of the vehicle's own system: ground stations show what is said in that one.
+void MavsdkLink::Impl::join_system() {
+  mavsdk_configuration_set_system_id(configuration_.get(), system_id_);
+  mavsdk_set_configuration(mavsdk_.get(), configuration_.get());
+  own_system_id_ = system_id_;
+}
+
 // MAVSDK's mavlink_direct hears one system; whoever else speaks on the connection gets a listener of its own.
 void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
   static constexpr std::array<Interest, 2> kInterests{{{"HEARTBEAT"}, {"ADSB_VEHICLE", From::kAnyComponent}}};
@@ -161,7 +168,7 @@ void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
 
 bool MavsdkLink::Impl::transmit(const char* name, const json& fields) const {
   const std::string text = fields.dump();
-  const mavsdk_mavlink_message_t message{name, own_system_id_, own_component_id_, 0, 0, text.c_str()};
+  const mavsdk_mavlink_message_t message{name, own_system_id_, kOwnComponent, 0, 0, text.c_str()};
   return mavsdk_mavlink_direct_send_message(autopilot_->direct(), message) == MAVSDK_MAVLINK_DIRECT_RESULT_SUCCESS;
 }
 
@@ -204,6 +211,25 @@ bool MavsdkLink::Impl::send(const vehicle::Setpoint& setpoint) {
   const std::scoped_lock lock(mutex_);
   ++setpoints_sent_;
   return true;
+}
+
+bool MavsdkLink::Impl::tell(const vehicle::StatusText& text) {
+  if (!ready_) return false;
+  const std::vector<std::string> chunks = vehicle::status_text_chunks(text.text);
+  std::uint16_t id = 0;  // one chunk has none
+  if (chunks.size() > 1) {
+    const std::scoped_lock lock(mutex_);
+    if (++text_id_ == 0) ++text_id_;
+    id = text_id_;
+  }
+  bool sent = true;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    sent =
+        transmit("STATUSTEXT",
+                 {{"severity", static_cast<int>(text.severity)}, {"text", chunks[i]}, {"id", id}, {"chunk_seq", i}}) &&
+        sent;
+  }
+  return sent;
 }
 
 void MavsdkLink::Impl::request(vehicle::Command command) {
@@ -287,6 +313,9 @@ vehicle::VehicleState MavsdkLink::state() {
 }
 bool MavsdkLink::send(const vehicle::Setpoint& setpoint) {
   return impl_->send(setpoint);
+}
+bool MavsdkLink::tell(const vehicle::StatusText& text) {
+  return impl_->tell(text);
 }
 void MavsdkLink::request(vehicle::Command command) {
   impl_->request(command);

@@ -16,6 +16,7 @@
 #include "bridge/mavlink/adsb_tracks.hpp"
 #include "bridge/mavlink/autopilot_telemetry.hpp"
 #include "bridge/vehicle/px4.hpp"
+#include "bridge/vehicle/status_text.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 
 namespace jink::bridge::mavsdk {
@@ -75,6 +76,10 @@ class MavsdkLink final : public vehicle::VehicleLink {
   [[nodiscard]] bool send(const vehicle::Setpoint& setpoint) override;
   void request(vehicle::Command command) override;
   [[nodiscard]] std::optional<vehicle::CommandReport> next_report() override;
+
+  /// A text for ground stations, as STATUSTEXT of this component in the vehicle's system; PX4 passes it on to its other
+  /// links where forwarding is on for both. False as for send().
+  [[nodiscard]] bool tell(const vehicle::StatusText& text);
 
   /// The oldest notice not yet taken, if any; at most 64 wait.
   [[nodiscard]] std::optional<mavlink::LinkNotice> next_notice();

@@ -35,6 +35,7 @@ class MavsdkLink::Impl {
   bool wait_for_autopilot(double timeout_s, const std::stop_token& stop);
   vehicle::VehicleState state() const;
   bool send(const vehicle::Setpoint& setpoint);
+  bool tell(const vehicle::StatusText& text);
   void request(vehicle::Command command);
   std::optional<vehicle::CommandReport> next_report();
   mavlink::LinkCounts counts() const;
@@ -87,6 +88,8 @@ class MavsdkLink::Impl {
     std::deque<Subscription> subscriptions_;  // stays where it is when it grows
   };
 
+  static constexpr std::uint8_t kOwnComponent = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
+
   // Streams that are asked for and measured.
   enum Stream : std::size_t { kHeartbeat, kLocalPosition, kAttitude, kOdometry, kStreams };
   struct Tally {
@@ -96,6 +99,7 @@ class MavsdkLink::Impl {
     double largest_gap = 0.0;
   };
 
+  void join_system();
   void watch_other_systems(const std::stop_token& stop);
   bool transmit(const char* name, const nlohmann::json& fields) const;
   bool transmit(const vehicle::px4::CommandLong& command) const;
@@ -124,12 +128,12 @@ class MavsdkLink::Impl {
 
   const base::Clock& clock_;
   const double created_;
-  std::uint32_t own_system_id_ = 0;
-  std::uint32_t own_component_id_ = 0;
+  std::atomic<std::uint32_t> own_system_id_ = 0;
 
   mutable std::mutex mutex_;  // guards the next block
   mavlink::AutopilotTelemetry telemetry_;
   std::uint64_t setpoints_sent_ = 0;
+  std::uint16_t text_id_ = 0;  // of the newest text in several chunks
   std::array<Tally, kStreams> tallies_;
   std::array<std::uint64_t, kStreams> heard_{};
   std::array<std::uint64_t, kStreams> at_heartbeat_{};  // heard_ at the heartbeat before
@@ -150,6 +154,7 @@ class MavsdkLink::Impl {
   std::uint32_t system_id_ = 0;
 
   // In the order of construction; MAVSDK aborts when they are destroyed in another than the reverse one.
+  ConfigurationHandle configuration_;
   MavsdkHandle mavsdk_;
   std::unique_ptr<Listener> autopilot_;
   std::vector<std::unique_ptr<Listener>> others_;  // watcher_'s alone

@@ -136,7 +136,7 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::C
   const std::scoped_lock lock(mutex_);
   // Without the extension fields the answer is taken as ours.
   const bool ours = (message.target_system == 0 || message.target_system == own_system_id_) &&
-                    (message.target_component == 0 || message.target_component == own_component_id_);
+                    (message.target_component == 0 || message.target_component == kOwnComponent);
   if (ours) commands_.acknowledge(message.command, message.result, now);
 }
 

@@ -21,6 +21,15 @@ std::string shown(std::uint32_t severity, std::string text) {
 
 }  // namespace
 
+std::vector<std::string> status_text_chunks(const std::string& text) {
+  if (text.size() <= kStatusTextChunk) return {text};
+  std::vector<std::string> chunks;
+  for (std::size_t begin = 0; begin <= text.size(); begin += kStatusTextChunk) {
+    chunks.push_back(text.substr(begin, kStatusTextChunk));
+  }
+  return chunks;
+}
+
 void StatusTexts::finish(std::vector<std::string>& complete) {
   if (id_ != 0 && !text_.empty()) complete.push_back(shown(severity_, text_));
   id_ = 0;
@@ -44,7 +53,7 @@ std::vector<std::string> StatusTexts::add(std::uint32_t severity, std::uint32_t 
   if (chunk > next_) text_ += "...";
   text_ += text;
   next_ = chunk + 1;
-  if (text.size() < kChunk || text_.size() > kLongest) {
+  if (text.size() < kStatusTextChunk || text_.size() > kLongest) {
     text_.resize(text_.size() > kLongest ? kLongest : text_.size());
     finish(complete);
   }

@@ -122,7 +122,9 @@ void MavlinkEndpoint::Impl::poll(double now) {
   for (MavlinkLink& link : links_) {
     link.advance(now_);
     link.receive([&](const mavlink_message_t& message) {
-      if (link_up) handle(link, message);
+      if (!link_up) return;
+      handle(link, message);
+      forward(link, message);
     });
   }
   watch_reboots();  // a command may ask for one
@@ -147,6 +149,26 @@ void MavlinkEndpoint::Impl::watch_reboots() {
   for (MavlinkLink& link : links_) {
     reset_streams(link);
     link.ground_station = link.listing_parameters = false;
+    link.components.clear();
+  }
+}
+
+/// To the other links, unless it is for the autopilot alone: to those on which its target was heard, or anybody where
+/// it is for all. All links of PX4's SITL do so.
+void MavlinkEndpoint::Impl::forward(const MavlinkLink& from, const mavlink_message_t& message) {
+  const mavlink_msg_entry_t* const entry = mavlink_get_msg_entry(message.msgid);
+  if (entry == nullptr) return;
+  const auto target = [&](unsigned flag, std::uint8_t offset) {
+    return (entry->flags & flag) != 0U ? static_cast<std::uint8_t>(_MAV_PAYLOAD(&message)[offset]) : std::uint8_t{0};
+  };
+  const std::uint8_t system = target(MAV_MSG_ENTRY_FLAG_HAVE_TARGET_SYSTEM, entry->target_system_ofs);
+  const std::uint8_t component = target(MAV_MSG_ENTRY_FLAG_HAVE_TARGET_COMPONENT, entry->target_component_ofs);
+  if (system == system_id_ && component == MAV_COMP_ID_AUTOPILOT1) return;
+  const auto meant = [&](const std::pair<std::uint8_t, std::uint8_t>& heard) {
+    return system == 0 || (heard.first == system && (component == 0 || heard.second == component));
+  };
+  for (MavlinkLink& link : links_) {
+    if (&link != &from && std::any_of(link.components.begin(), link.components.end(), meant)) link.pass(message);
   }
   for (MissionProtocol& mission : missions_) mission.reset();
 }
@@ -174,6 +196,7 @@ bool MavlinkEndpoint::Impl::for_us(std::uint8_t system, std::uint8_t component) 
 }
 
 void MavlinkEndpoint::Impl::handle(MavlinkLink& link, const mavlink_message_t& message) {
+  link.components.emplace(message.sysid, message.compid);
   switch (message.msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:
       return handle_heartbeat(link, message);

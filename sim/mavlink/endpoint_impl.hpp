@@ -55,6 +55,7 @@ class MavlinkEndpoint::Impl {
  private:
   // mavlink_endpoint.cpp
   void handle(MavlinkLink& link, const mavlink_message_t& message);
+  void forward(const MavlinkLink& from, const mavlink_message_t& message);
   void handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message);
   void watch_companion();
   void watch_reboots();

@@ -8,7 +8,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/faults/impairment.hpp"
@@ -43,6 +45,9 @@ class MavlinkLink {
     send_frame(message);
   }
 
+  /// Sends another one's message as it is.
+  void pass(const mavlink_message_t& message) { send_frame(message); }
+
   /// Hands every message that has arrived to `handle`. Malformed bytes are dropped and counted. Whoever sends a valid
   /// message from the link's address becomes the one that is sent to.
   void receive(const std::function<void(const mavlink_message_t&)>& handle);
@@ -52,8 +57,9 @@ class MavlinkLink {
   /// SET_POSITION_TARGET_LOCAL_NED in what came from the socket, before any impairment, whoever it is for.
   [[nodiscard]] std::uint64_t setpoints() const { return setpoints_; }
 
-  std::vector<Stream> streams;  ///< parallel to the endpoint's table of messages
-  bool ground_station = false;  ///< a ground station's heartbeat has come
+  std::vector<Stream> streams;                                 ///< parallel to the endpoint's table of messages
+  bool ground_station = false;                                 ///< a ground station's heartbeat has come
+  std::set<std::pair<std::uint8_t, std::uint8_t>> components;  ///< systems and components that were heard
   std::size_t next_listed_parameter = 0;
   bool listing_parameters = false;
 

@@ -35,6 +35,7 @@ class Peer:
         self.target = None  # NED; while it is set, setpoints answer ATTITUDE
         self.setpoint_sent = self.last_heartbeat = self.last_heard = 0.0  # monotonic
         self.texts, self.chunks, self.events = [], {}, []
+        self.companion_texts = []  # severity and text, of other components of the system
         self.system_times = []  # simulated time and the autopilot's, s
         self.position = None  # NED
         self.boot_time = 0.0  # s, the autopilot's
@@ -74,6 +75,16 @@ class Peer:
             else:
                 self.chunks[message.id] = text
 
+    def note_companion(self, message):
+        if message is None or message.get_type() != "STATUSTEXT" or message.get_srcSystem() != self.system:
+            return
+        key = (message.get_srcComponent(), message.id)
+        text = self.chunks.pop(key, "") + message.text
+        if message.id == 0 or len(message.text) < 50:
+            self.companion_texts.append((message.severity, text, message.get_srcComponent(), time.monotonic()))
+        else:
+            self.chunks[key] = text
+
     def send_setpoint(self):
         self.link.mav.set_position_target_local_ned_send(0, self.system, 1, MAV.MAV_FRAME_LOCAL_NED, POSITION_ONLY,
                                                          *self.target, 0, 0, 0, 0, 0, 0, 0, 0)
@@ -96,6 +107,7 @@ class Peer:
                 self.send_setpoint()  # an answer or what it answers may have been lost
             message = self.link.recv_match(blocking=True, timeout=0.05)
             if message is None or not self.from_autopilot(message):
+                self.note_companion(message)
                 continue
             self.note(message)
             if self.target is not None and is_setpoint_due(message):

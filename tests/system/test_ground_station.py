@@ -25,6 +25,9 @@ def test(jink, instance):
         # Before it comes among the obstacles, where holding would not be safe.
         ground.expect(lambda: output.exists() and "phase: flying" in output.read_text(), 60, "the mission under way")
         ground.expect(lambda: ground.position and ground.position[2] < -1.0, 20, "the vehicle above 1 m")
+        told = [(severity, text) for severity, text, *_ in ground.companion_texts]
+        for phase in ("taking over", "climbing", "flying"):
+            check((MAV.MAV_SEVERITY_INFO, f"jink: {phase}") in told, f"the pilot is told: {phase}")
 
         check(ground.set_mode(4, 3) == [0, 0], "HOLD by DO_SET_MODE is accepted, twice acknowledged")
         ground.expect(lambda: ground.mode() == HOLD, 3, "HOLD")
@@ -33,6 +36,12 @@ def test(jink, instance):
         check(wait(fly, 5) == 1, f"fly ends with exit status 1, after {time.monotonic() - taken_over:.1f} s")
         summary = arena.read("fly.json")
         check(summary["outcome"] == "aborted", f"outcome {summary['outcome']}: {summary['reason']}")
+
+        end = "jink: done: aborted, the mode was changed to hold by pilot or autopilot"
+        ground.expect(lambda: (MAV.MAV_SEVERITY_CRITICAL, end) in [t[:2] for t in ground.companion_texts], 3, end)
+        times = [t[3] for t in ground.companion_texts]
+        check(all(b - a > 0.9 for a, b in zip(times, times[2:-1])), "no more than two texts a second, but the end's")
+        check({t[2] for t in ground.companion_texts} == {MAV.MAV_COMP_ID_ONBOARD_COMPUTER}, "from the onboard computer")
 
         left = [ground.mode()]
         ground.pump(4.0, lambda _: left.append(ground.mode()))

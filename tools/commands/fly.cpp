@@ -9,6 +9,7 @@
 
 #include "bridge/base/clock.hpp"
 #include "bridge/companion/companion.hpp"
+#include "bridge/companion/pilot_texts.hpp"
 #include "bridge/dds/intents.hpp"
 #include "bridge/dds/px4_link.hpp"
 #include "bridge/dds/tracks.hpp"
@@ -64,7 +65,8 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
 /// Ctrl-C brakes and hands over to HOLD.
 void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLink& link,
               const bridge::base::Clock& clock, double rate_hz, bridge::base::Notifier& notifier,
-              const std::vector<bridge::companion::FlightObserver*>& observers) {
+              const std::vector<bridge::companion::FlightObserver*>& observers,
+              bridge::companion::PilotTexts& pilot_texts) {
   constexpr double kFailing_s = 10.0;  // of turns that throw, after which HOLD has been asked for often enough
   const auto period =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
@@ -82,6 +84,9 @@ void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLin
       link.request(bridge::vehicle::Command::kHold);
     }
     if (failed && begun - last_good > kFailing_s) return;
+    const bool heard = link.autopilot_system_id() != 0;  // until then texts wait
+    for (auto text = heard ? pilot_texts.next(begun) : std::nullopt; text; text = pilot_texts.next(begun))
+      (void)link.tell(*text);
     if (cli::interrupted()) companion.interrupt(clock.now());
     while (const auto notice = link.next_notice()) {
       for (bridge::companion::FlightObserver* observer : observers)
@@ -152,7 +157,8 @@ int run(const FlyOptions& options) {
   std::optional<cli::BackgroundPrinter> background(printer);
   EventPrinter event_printer(*background);
   cli::FlightProgress live(mission, settings.companion.stale_state, *background);
-  std::vector<bridge::companion::FlightObserver*> observers{&event_printer, &live};
+  bridge::companion::PilotTexts pilot_texts;
+  std::vector<bridge::companion::FlightObserver*> observers{&event_printer, &live, &pilot_texts};
   std::unique_ptr<log::FlightLog> log;
   std::unique_ptr<bridge::mavsdk::MavsdkLink> link;
   try {
@@ -178,7 +184,8 @@ int run(const FlyOptions& options) {
                                mission.connection, mission.dds_domain, options.common.seed));
   if (const std::string trouble = bridge::dds::discovery_trouble(mission.dds_domain); !trouble.empty())
     background->line("warning: " + trouble);
-  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, notifier, observers);
+  run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, notifier, observers, pilot_texts);
+  while (const auto text = pilot_texts.last()) (void)link->tell(*text);
 
   background.reset();
   const bridge::companion::FlightSummary flight = companion.summary();

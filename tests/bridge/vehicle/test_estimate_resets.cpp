@@ -188,6 +188,22 @@ TEST(StatusTexts, PutsChunksTogether) {
   EXPECT_EQ(texts.add(6, 8, 0, "a\nb\x07"), Lines{"info: a?b?"});
 }
 
+TEST(StatusTexts, PutsTogetherWhatWasCut) {
+  for (const std::size_t size : {0, 1, 49, 50, 51, 99, 100, 101, 250}) {
+    const std::string text(size, 'x');
+    const Lines chunks = jink::bridge::vehicle::status_text_chunks(text);
+    EXPECT_EQ(chunks.size(), size <= 50 ? 1 : size / 50 + 1) << size;
+    StatusTexts texts;
+    Lines whole;
+    for (std::uint32_t i = 0; i < chunks.size(); ++i) {
+      EXPECT_TRUE(whole.empty());
+      EXPECT_LE(chunks[i].size(), 50U);
+      whole = texts.add(6, chunks.size() > 1 ? 9 : 0, i, chunks[i]);
+    }
+    EXPECT_EQ(whole, Lines{"info: " + text}) << size;
+  }
+}
+
 TEST(StatusTexts, SaysWhereAChunkWasLost) {
   StatusTexts texts;
   const std::string fifty(50, 'x');

@@ -72,6 +72,43 @@ TEST_F(MavlinkEndpointTest, TextsGoToGroundStationsAloneInChunksEndingInATab) {
   EXPECT_EQ(texts(), (std::vector<std::string>{"Arming denied: Resolve system health failures first\t"}));
 }
 
+TEST_F(MavlinkEndpointTest, PassesOnWhatIsNotForItAlone) {
+  const auto passed = [&] { return count(heard_on_ground, MAVLINK_MSG_ID_STATUSTEXT); };
+  mavlink_statustext_t text{};
+  text.severity = MAV_SEVERITY_WARNING;
+  std::strncpy(text.text, "from the companion", sizeof(text.text));
+  tell(mavlink_msg_statustext_encode_status, text);
+  poll();
+  poll();
+  EXPECT_EQ(passed(), 0U);  // nobody was heard there
+  ground_station_heartbeat();
+  poll();
+  EXPECT_EQ(std::count_if(heard.begin(), heard.end(), [](const auto& m) { return m.sysid == kClientSystem; }), 1);
+  tell(mavlink_msg_statustext_encode_status, text);
+  poll();
+  poll();
+  ASSERT_EQ(passed(), 1U);
+  const auto found = std::find_if(heard_on_ground.begin(), heard_on_ground.end(),
+                                  [](const auto& m) { return m.msgid == MAVLINK_MSG_ID_STATUSTEXT; });
+  EXPECT_EQ(found->sysid, kClientSystem);
+  EXPECT_EQ(found->compid, kClientComponent);
+
+  const auto parameter_requests = [&](std::uint8_t system, std::uint8_t component) {
+    heard_on_ground.clear();
+    mavlink_param_request_list_t request{};
+    request.target_system = system;
+    request.target_component = component;
+    tell(mavlink_msg_param_request_list_encode_status, request);
+    poll();
+    poll();
+    return count(heard_on_ground, MAVLINK_MSG_ID_PARAM_REQUEST_LIST);
+  };
+  EXPECT_EQ(parameter_requests(1, MAV_COMP_ID_AUTOPILOT1), 0U);
+  EXPECT_EQ(parameter_requests(77, 1), 0U);
+  EXPECT_EQ(parameter_requests(kClientSystem, kClientComponent), 1U);
+  EXPECT_EQ(parameter_requests(0, 0), 1U);
+}
+
 TEST_F(AirborneEndpointTest, TheCompanionsHeartbeatAloneIsMissedInATextAndNoMore) {
   ground_station_heartbeat();
   mavlink_heartbeat_t heartbeat{};
