@@ -113,6 +113,34 @@ TEST_F(MissionEndpointTest, MovesToAnotherItemAndSaysSoAtOnce) {
   EXPECT_EQ(autopilot.mission().current(), 1U);
 }
 
+/// The report of the arming checks, which else says that MISSION lacks one.
+TEST_F(MissionEndpointTest, IsInTheReportOfTheArmingChecks) {
+  constexpr std::uint32_t kSummary = 0x01A893E0;
+  constexpr std::uint32_t kNoMission = 0x0105C2D9;
+  constexpr std::size_t kModesByte = 9;  // after a byte and two words; then the modes to arm in
+  constexpr unsigned kMissionBit = 1U << 3U;
+  const auto look = [&](std::uint32_t id) {
+    const mavlink_message_t* found = nullptr;
+    for (const auto& message : heard) {
+      if (message.msgid == MAVLINK_MSG_ID_EVENT && mavlink_msg_event_get_id(&message) == id) found = &message;
+    }
+    return found;
+  };
+  run(0.5);
+  setpoint(kPositionOnly, {0, 0, -3}, Vec3::Zero());
+  run(0.2);
+  ASSERT_NE(look(kSummary), nullptr);
+  EXPECT_NE(look(kNoMission), nullptr);
+  heard.clear();
+  upload({place(MAV_CMD_NAV_TAKEOFF, 0, 4)});
+  run(0.2);
+  ASSERT_NE(look(kSummary), nullptr);
+  EXPECT_EQ(look(kNoMission), nullptr);
+  mavlink_event_t summary;
+  mavlink_msg_event_decode(look(kSummary), &summary);
+  EXPECT_NE(summary.arguments[kModesByte] & kMissionBit, 0U);
+}
+
 TEST_F(MissionEndpointTest, SurviveAReboot) {
   upload({place(MAV_CMD_NAV_TAKEOFF, 0, 4)});
   EXPECT_EQ(command(MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, {1}), (Results{0}));
