@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Missions: the protocol on each link, what the autopilot gets of it, and what it tells of its progress.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,6 +11,7 @@ namespace jink::sim::mavlink {
 namespace {
 
 constexpr double kDegreesE7 = 1e7;
+constexpr double kLastItem = 65535.0;     ///< that a sequence number can name
 constexpr int kReachedRepeats = 10;       ///< PX4 says it again, in case it got lost
 constexpr double kReachedInterval = 1.0;  ///< s
 
@@ -67,7 +69,7 @@ vehicle::MissionItem flown(const ListItem& item) {
       break;
     case MAV_CMD_DO_JUMP:
       result.kind = Kind::kJump;
-      result.jump_to = static_cast<std::size_t>(not_negative(item.param1));
+      result.jump_to = static_cast<std::size_t>(std::min(not_negative(item.param1), kLastItem));
       result.repeats = whole_number(item.param2);
       break;
     default:

@@ -150,6 +150,27 @@ TEST(Mission, JumpsBackAsOftenAsItSays) {
   EXPECT_EQ(flight.reached, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
 }
 
+TEST(Mission, PassesOverAJumpToNowhere) {
+  MissionItem nowhere = item(Kind::kJump);
+  nowhere.jump_to = 9;
+  nowhere.repeats = -1;
+  MissionFlight flight(airborne_options(), {nowhere, item(Kind::kWaypoint, {5, 0, 3})});
+  ASSERT_EQ(flight.autopilot.fly_mission(), Result::kAccepted);
+  flight.fly_to_the_end();
+  EXPECT_EQ(flight.reached, (std::vector<std::size_t>{1}));
+}
+
+TEST(Mission, StaysAtAnItemThatDoesNotGoOn) {
+  MissionItem last = item(Kind::kWaypoint, {5, 0, 3});
+  last.autocontinue = false;
+  MissionFlight flight(airborne_options(), {last, item(Kind::kWaypoint, {30, 0, 3})});
+  ASSERT_EQ(flight.autopilot.fly_mission(), Result::kAccepted);
+  flight.run(15.0);
+  EXPECT_EQ(flight.autopilot.mode(), FlightMode::kMission);
+  EXPECT_EQ(flight.autopilot.mission().reached(), 0U);
+  EXPECT_LT(flight.distance({5, 0, 3}), 0.3);
+}
+
 TEST(Mission, IsPausedByHoldAndGoesOnWhereItWas) {
   MissionFlight flight(airborne_options(), {item(Kind::kWaypoint, {5, 0, 3}), item(Kind::kWaypoint, {30, 0, 3})});
   ASSERT_EQ(flight.autopilot.set_mode(kAuto, kAutoMission), Result::kAccepted);
