@@ -15,9 +15,10 @@ namespace {
 using Level = Check::Level;
 using Parameters = std::map<std::string, vehicle::px4::Parameter>;
 
-constexpr int kOffboardExcepted = 4;     // bit 2 of COM_RCL_EXCEPT
-constexpr double kLongestLoss_s = 1.0;   // PX4's default of COM_OF_LOSS_T
-constexpr double kShortestLoss_s = 0.2;  // ten setpoints: less, and a hiccup of the link is a failsafe
+constexpr int kOffboardExcepted = 4;          // bit 2 of COM_RCL_EXCEPT
+constexpr double kHoldWithoutFailsafe = 7.0;  // NAV_RCL_ACT of PX4 1.18: out of modes flown by hand, and nothing else
+constexpr double kLongestLoss_s = 1.0;        // PX4's default of COM_OF_LOSS_T
+constexpr double kShortestLoss_s = 0.2;       // ten setpoints: less, and a hiccup of the link is a failsafe
 
 const std::array<std::string, 6> kNames{"COM_OBL_RC_ACT", "COM_OF_LOSS_T", "COM_RCL_EXCEPT",
                                         "NAV_RCL_ACT",    "NAV_DLL_ACT",   "COM_LOW_BAT_ACT"};
@@ -75,6 +76,10 @@ Check manual_loss(double value, std::optional<double> action, bool rc_receiver) 
   const bool excepted = std::isfinite(value) && (static_cast<int>(value) & kOffboardExcepted) != 0;
   if (excepted) {
     return {Level::kOk, "COM_RCL_EXCEPT", fmt::format("{:g}: offboard goes on without manual control", value), ""};
+  }
+  if (action == kHoldWithoutFailsafe) {
+    return {Level::kOk, "COM_RCL_EXCEPT",
+            fmt::format("{:g}, with NAV_RCL_ACT 7: offboard goes on without manual control", value), ""};
   }
   const std::string then = action ? fmt::format("NAV_RCL_ACT ({:g})", *action) : std::string("NAV_RCL_ACT");
   Check check{Level::kOk, "COM_RCL_EXCEPT",

@@ -21,6 +21,7 @@ ModeChange ModeChanges::judge(double now, Phase phase, bool armed_before, const 
   const bool streaming = phase != Phase::kHandover && (airborne || asking);
   const bool offboard = state.mode == vehicle::FlightMode::kOffboard;
   if (asking && offboard) offboard_seen_ = true;
+  if (offboard) critical_in_offboard_ = state.failsafe;
   if (streaming && armed_before && !state.armed) return ModeChange::kDisarmed;
   const bool left = streaming && offboard_seen_ && !offboard;
   const bool never_came = asking && !offboard_seen_ && state.mode != before_;
@@ -28,7 +29,9 @@ ModeChange ModeChanges::judge(double now, Phase phase, bool armed_before, const 
     failsafe_since_.reset();
     return ModeChange::kNone;
   }
-  if (!state.failsafe) return ModeChange::kTakeover;
+  // Where a warning had the state CRITICAL before, it does not tell a failsafe from a pilot, whose word is the last
+  // one.
+  if (!state.failsafe || (left && critical_in_offboard_)) return ModeChange::kTakeover;
   if (phase == Phase::kEngaging) {  // of a companion before us: our stream ends it
     offboard_seen_ = false;
     return ModeChange::kNone;

@@ -36,6 +36,7 @@ class ModeChanges {
  private:
   vehicle::FlightMode before_ = vehicle::FlightMode::kUnknown;
   bool offboard_seen_ = false;
+  bool critical_in_offboard_ = false;  // a mere warning: so PX4 before 1.15 says
   std::optional<double> failsafe_since_;
 };
 

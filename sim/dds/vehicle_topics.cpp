@@ -8,6 +8,9 @@
 #include <mutex>
 #include <optional>
 
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
 #include "Px4.h"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/px4_link.hpp"
@@ -90,6 +93,33 @@ WirePosition position_of(const vehicle::Autopilot& autopilot, const EstimateJump
   return wire;
 }
 
+/// The same in the layout of PX4 1.14 or 1.16, field by field as their .msg files have them.
+bridge::dds::Payload older(const WirePosition& w, vehicle::Px4Version version) {
+  const bool unversioned = version == vehicle::Px4Version::k1_14;
+  bridge::dds::Payload payload(256);
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(payload.data()), payload.size());
+  eprosima::fastcdr::Cdr out(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR);
+  out.serialize_encapsulation();
+  out << w.timestamp() << w.timestamp_sample() << w.xy_valid() << w.z_valid() << w.v_xy_valid() << w.v_z_valid();
+  out << w.x() << w.y() << w.z() << w.delta_xy() << w.xy_reset_counter() << w.delta_z() << w.z_reset_counter();
+  out << w.vx() << w.vy() << w.vz() << w.z_deriv() << w.delta_vxy() << w.vxy_reset_counter() << w.delta_vz();
+  out << w.vz_reset_counter() << w.ax() << w.ay() << w.az() << w.heading();
+  if (!unversioned) out << w.heading_var();
+  out << w.unaided_heading() << w.delta_heading() << w.heading_reset_counter() << w.heading_good_for_control();
+  if (!unversioned) out << w.tilt_var();
+  out << w.xy_global() << w.z_global() << w.ref_timestamp() << w.ref_lat() << w.ref_lon() << w.ref_alt();
+  if (unversioned) {
+    out << w.dist_bottom() << w.dist_bottom_valid() << w.dist_bottom_sensor_bitfield();
+  } else {
+    out << w.dist_bottom_valid() << w.dist_bottom() << w.dist_bottom_var() << w.delta_dist_bottom();
+    out << w.dist_bottom_reset_counter() << w.dist_bottom_sensor_bitfield();
+  }
+  out << w.eph() << w.epv() << w.evh() << w.evv() << w.dead_reckoning();
+  out << w.vxy_max() << w.vz_max() << w.hagl_min() << w.hagl_max_z();  // one limit of the height
+  payload.resize(out.getSerializedDataLength());
+  return payload;
+}
+
 }  // namespace
 
 const EstimateJumps& EstimateJumpDetector::update(std::uint8_t counter, const vehicle::Motion& estimated, double dt) {
@@ -110,8 +140,12 @@ bool YawAlignment::update(double now, bool landed, double height) {
 
 class VehicleTopics::Impl {
  public:
-  Impl(bridge::dds::DdsParticipant& node, const std::string& name_space)
-      : positions_(node, bridge::dds::px4_topic(name_space, bridge::dds::kLocalPositionTopicV1),
+  Impl(bridge::dds::DdsParticipant& node, const std::string& name_space, vehicle::Px4Version version)
+      : version_(version),
+        positions_(node,
+                   bridge::dds::px4_topic(name_space, version < vehicle::Px4Version::k1_17
+                                                          ? bridge::dds::kLocalPositionTopic
+                                                          : bridge::dds::kLocalPositionTopicV1),
                    bridge::dds::kLocalPositionType, {.transient_local = true}),
         setpoint_reader_(node, bridge::dds::px4_topic(name_space, bridge::dds::kTrajectorySetpointTopic),
                          bridge::dds::kTrajectorySetpointType, take_into(setpoint_)),
@@ -124,7 +158,10 @@ class VehicleTopics::Impl {
     const bool yaw_aligned = yaw_.update(now, autopilot.landed(), height);
     if (now < next_position_) return;
     next_position_ = std::max(next_position_ + 1.0 / kPositionRate_hz, now);
-    if (!positions_.write_message(position_of(autopilot, jumps, yaw_aligned))) {
+    const WirePosition position = position_of(autopilot, jumps, yaw_aligned);
+    const bool sent = version_ < vehicle::Px4Version::k1_17 ? positions_.write(older(position, version_))
+                                                            : positions_.write_message(position);
+    if (!sent) {
       autopilot.report(vehicle::Severity::kWarning, "DDS: a position could not be published");
     }
   }
@@ -180,6 +217,7 @@ class VehicleTopics::Impl {
   Newest<WireSetpoint> setpoint_;
   std::atomic<std::uint64_t> malformed_ = 0;
 
+  vehicle::Px4Version version_;
   YawAlignment yaw_;
   double next_position_ = 0.0;
   std::optional<double> mode_came_;
@@ -190,8 +228,9 @@ class VehicleTopics::Impl {
   bridge::dds::PayloadReader mode_reader_;
 };
 
-VehicleTopics::VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space)
-    : impl_(std::make_unique<Impl>(node, name_space)) {}
+VehicleTopics::VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space,
+                             vehicle::Px4Version version)
+    : impl_(std::make_unique<Impl>(node, name_space, version)) {}
 VehicleTopics::~VehicleTopics() = default;
 void VehicleTopics::step(double now, vehicle::Autopilot& autopilot, const EstimateJumps& jumps) {
   impl_->step(now, autopilot, jumps);

@@ -47,7 +47,8 @@ class YawAlignment {
   std::optional<double> climbed_at_;
 };
 
-/// Publishes VehicleLocalPosition (version 1, vehicle_local_position_v1, best effort, transient local) and takes
+/// Publishes VehicleLocalPosition (best effort, transient local; version 1 as vehicle_local_position_v1, or for
+/// PX4 1.16 version 0 and for 1.14 the layout without a version, both as vehicle_local_position) and takes
 /// TrajectorySetpoint and OffboardControlMode (best effort, volatile). The mode is what keeps offboard alive: each one
 /// renews the newest setpoint, and setpoints without a mode in the last kModeTimeout_s are left alone. Of the modes
 /// that ask for position, velocity or acceleration, the first that is set counts; others are refused with a status
@@ -58,7 +59,8 @@ class VehicleTopics {
   static constexpr double kModeTimeout_s = 0.5;  ///< PX4 asks for more than 2 Hz
 
   /// `name_space` as of the agent: "px4_1". `node` must outlive it. @throws std::runtime_error, one line.
-  VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space = {});
+  VehicleTopics(bridge::dds::DdsParticipant& node, const std::string& name_space = {},
+                vehicle::Px4Version version = vehicle::Px4Version::k1_17);
   ~VehicleTopics();
   VehicleTopics(const VehicleTopics&) = delete;
   VehicleTopics& operator=(const VehicleTopics&) = delete;

@@ -50,6 +50,7 @@ void Simulator::add_vehicles(const std::vector<config::ScenarioVehicle>& specs) 
     if (!options_.endpoints.empty()) endpoint = options_.endpoints.at(k);
     endpoint.seed = options_.seed;
     vehicle.system_id = endpoint.instance + 1;
+    vehicle.version = options_.px4;
     vehicles_.emplace_back(specs[k], vehicle, endpoint);
   }
   judge_.emplace(world_, specs, positions());

@@ -33,7 +33,8 @@ struct SimulatorOptions {
   int instance = 0;              ///< vehicle k is MAVLink instance `instance` + k
   bool vehicles = true;          ///< false: the obstacles alone, and their clock runs at once
   bool immediate_clock = false;  ///< does not wait for the vehicles
-  double clock_rate = 1.0;       ///< as EndpointOptions::clock_rate, where the instances are its own
+  vehicle::Px4Version px4 = vehicle::Px4Version::k1_17;
+  double clock_rate = 1.0;  ///< as EndpointOptions::clock_rate, where the instances are its own
   std::vector<mavlink::EndpointOptions>
       endpoints{};  ///< one for each vehicle, in place of the instances'; empty: those
 };

@@ -185,7 +185,9 @@ void MavlinkEndpoint::Impl::handle_heartbeat(MavlinkLink& link, const mavlink_me
 /// A text, and nothing else: the flight depends on the setpoints alone.
 void MavlinkEndpoint::Impl::watch_companion() {
   if (!companion_heard_ || companion_lost_) return;
-  if (now_ - *companion_heard_ < autopilot_.parameters().real("COM_OBC_LOSS_T")) return;
+  constexpr double kFixedLoss = 5.0;  // s, of PX4 1.18, which has no parameter for it
+  const bool fixed = !autopilot_.parameters().find("COM_OBC_LOSS_T");
+  if (now_ - *companion_heard_ < (fixed ? kFixedLoss : autopilot_.parameters().real("COM_OBC_LOSS_T"))) return;
   companion_lost_ = true;
   autopilot_.report(vehicle::Severity::kCritical, "Connection to mission computer lost");
 }

@@ -54,6 +54,21 @@ std::array<float, 21> upper_triangle(const std::array<float, 6>& diagonal) {
   return triangle;
 }
 
+/// Major, minor, patch and kind: 255 is a release, 64 an alpha.
+std::uint32_t software_version(vehicle::Px4Version version) {
+  switch (version) {
+    case vehicle::Px4Version::k1_14:
+      return 0x010E00FF;
+    case vehicle::Px4Version::k1_16:
+      return 0x011000FF;
+    case vehicle::Px4Version::k1_17:
+      return 0x01110040;
+    case vehicle::Px4Version::k1_18:
+      return 0x011200FF;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::span<const MavlinkEndpoint::Impl::MessageKind> MavlinkEndpoint::Impl::message_kinds() {
@@ -416,7 +431,7 @@ void MavlinkEndpoint::Impl::send_autopilot_version(MavlinkLink& link) {
                          MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT | MAV_PROTOCOL_CAPABILITY_MISSION_INT |
                          MAV_PROTOCOL_CAPABILITY_MISSION_FENCE | MAV_PROTOCOL_CAPABILITY_MISSION_RALLY |
                          MAV_PROTOCOL_CAPABILITY_FTP | MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED;
-  message.flight_sw_version = message.middleware_sw_version = 0x01110040;  // 1.17.0 alpha
+  message.flight_sw_version = message.middleware_sw_version = software_version(autopilot_.options().version);
   message.board_version = 1;
   message.uid = system_id_;
   link.send(mavlink_msg_autopilot_version_encode_status, message);

@@ -55,7 +55,7 @@ bool is_manual(FlightMode mode) {
 
 Autopilot::Autopilot(const AutopilotOptions& options)
     : options_(checked(options)),
-      parameters_(options.limits, options.system_id),
+      parameters_(options.limits, options.system_id, options.version),
       model_(options.limits, start_position(options), options.ground_height, options.yaw, options.cascade),
       wind_(options.wind, options.seed),
       estimator_(options.estimate, options.seed, model_.motion(), options.airborne),
@@ -274,7 +274,7 @@ Heartbeat Autopilot::heartbeat() const {
   }
   if (armed_) flags |= kFlagArmed;
   std::uint8_t state = prearm_ok() ? kStateStandby : kStateUninitialised;
-  if (armed_) state = failsafe_ ? kStateCritical : kStateActive;
+  if (armed_) state = failsafe_ || warning_is_critical() ? kStateCritical : kStateActive;
   if (crashed_) state = kStateTermination;
   return {static_cast<std::uint8_t>(flags), static_cast<std::uint32_t>(mode()), state};
 }

@@ -13,6 +13,7 @@
 #include "sim/vehicle/mission.hpp"
 #include "sim/vehicle/parameters.hpp"
 #include "sim/vehicle/px4_event.hpp"
+#include "sim/vehicle/px4_version.hpp"
 #include "sim/vehicle/vehicle_model.hpp"
 #include "sim/vehicle/wind.hpp"
 
@@ -74,6 +75,7 @@ struct AutopilotOptions {
   double ground_height = 0.0;
   double ready_delay = 4.3;  ///< from start until it may be armed, PX4's SITL; 0 and less: at once
   int system_id = 1;
+  Px4Version version = Px4Version::k1_17;
   Cascade cascade{};
   Wind wind{};                ///< none: exactly as without a wind
   EstimateErrors estimate{};  ///< none: what it believes is the truth, bit by bit
@@ -156,6 +158,8 @@ class Autopilot {
   /// 0 to 1; NaN: not known.
   [[nodiscard]] double battery() const { return battery_; }
   [[nodiscard]] BatteryLevel battery_level() const;
+  /// PX4 before 1.15 says CRITICAL in its heartbeat also for what it only warns of.
+  [[nodiscard]] bool warning_is_critical() const;
   [[nodiscard]] const VehicleModel& model() const { return model_; }
   [[nodiscard]] Parameters& parameters() { return parameters_; }
   [[nodiscard]] const Parameters& parameters() const { return parameters_; }

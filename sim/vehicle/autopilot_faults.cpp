@@ -35,6 +35,10 @@ BatteryLevel Autopilot::battery_level() const {
   return remaining < parameters_.real("BAT_LOW_THR") ? BatteryLevel::kLow : BatteryLevel::kOk;
 }
 
+bool Autopilot::warning_is_critical() const {
+  return options_.version < Px4Version::k1_16 && battery_level() >= BatteryLevel::kLow;
+}
+
 void Autopilot::reboot() {
   disarm_now();
   texts_.clear();

@@ -8,7 +8,7 @@
 
 namespace jink::sim::vehicle {
 
-Parameters::Parameters(const planner::base::VehicleLimits& limits, int system_id) {
+Parameters::Parameters(const planner::base::VehicleLimits& limits, int system_id, Px4Version version) {
   const auto real = [](double value) { return ParameterValue(static_cast<float>(value)); };
   const auto integer = [](int value) { return ParameterValue(std::int32_t{value}); };
   table_ = {
@@ -22,7 +22,6 @@ Parameters::Parameters(const planner::base::VehicleLimits& limits, int system_id
       {"COM_DISARM_PRFLT", real(10.0)},
       {"COM_FAIL_ACT_T", real(5.0)},
       {"COM_LOW_BAT_ACT", integer(0)},
-      {"COM_OBC_LOSS_T", real(5.0)},
       {"COM_OBL_RC_ACT", integer(0)},
       {"COM_OF_LOSS_T", real(1.0)},
       {"COM_RCL_EXCEPT", integer(0)},
@@ -49,6 +48,13 @@ Parameters::Parameters(const planner::base::VehicleLimits& limits, int system_id
       {"SYS_AUTOSTART", integer(10040)},
       {"SYS_HITL", integer(0)},
   };
+  if (version >= Px4Version::k1_18) {
+    table_.push_back({"MAN_OVERRIDE_SPD", real(1.0)});
+  } else {
+    table_.push_back({"COM_OBC_LOSS_T", real(5.0)});
+    table_.push_back({"COM_RC_OVERRIDE", integer(1)});
+    table_.push_back({"COM_RC_STICK_OV", real(30.0)});
+  }
   std::sort(table_.begin(), table_.end(), [](const Parameter& a, const Parameter& b) { return a.name < b.name; });
 }
 

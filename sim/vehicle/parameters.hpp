@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planner/base/types.hpp"
+#include "sim/vehicle/px4_version.hpp"
 
 namespace jink::sim::vehicle {
 
@@ -25,7 +26,8 @@ struct Parameter {
 class Parameters {
  public:
   /// PX4's defaults; the speed limits are the vehicle's.
-  explicit Parameters(const planner::base::VehicleLimits& limits, int system_id = 1);
+  explicit Parameters(const planner::base::VehicleLimits& limits, int system_id = 1,
+                      Px4Version version = Px4Version::k1_17);
 
   [[nodiscard]] std::size_t size() const { return table_.size(); }
   [[nodiscard]] const Parameter& at(std::size_t index) const { return table_.at(index); }

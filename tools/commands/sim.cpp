@@ -34,6 +34,7 @@ struct SimOptions {
   std::string scenario;
   std::string log;
   std::string clock = "start";
+  std::string px4 = "1.17";
   double speed = 1.0;
   std::optional<double> boot_clock;
   double duration = 0.0;  // of simulated time; 0: until Ctrl-C
@@ -47,6 +48,12 @@ struct SimOptions {
 
 double unix_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+sim::vehicle::Px4Version px4_version(const std::string& name) {
+  if (name == "1.14") return sim::vehicle::Px4Version::k1_14;
+  if (name == "1.16") return sim::vehicle::Px4Version::k1_16;
+  return name == "1.18" ? sim::vehicle::Px4Version::k1_18 : sim::vehicle::Px4Version::k1_17;
 }
 
 /// Events to the terminal and the log, the truth to the log.
@@ -175,8 +182,8 @@ class DdsSides {
   DdsSides(const SimOptions& options, std::size_t vehicles) : node_(options.domain, "jink sim"), jumps_(vehicles) {
     for (std::size_t k = 0; k < vehicles; ++k) {
       const std::size_t instance = static_cast<std::size_t>(options.instance) + k;
-      sides_.push_back(
-          std::make_unique<sim::dds::VehicleTopics>(node_, instance == 0 ? "" : fmt::format("px4_{}", instance)));
+      sides_.push_back(std::make_unique<sim::dds::VehicleTopics>(
+          node_, instance == 0 ? "" : fmt::format("px4_{}", instance), px4_version(options.px4)));
     }
   }
 
@@ -271,6 +278,7 @@ int run(const SimOptions& options) {
   choices.seed = options.common.seed;
   choices.instance = options.instance;
   choices.vehicles = !options.no_vehicle;
+  choices.px4 = px4_version(options.px4);
   choices.immediate_clock = options.clock == "immediate";
   // In lockstep there is no wall clock that it could lag behind.
   choices.clock_rate = options.boot_clock.value_or(options.lockstep ? 1.0 : sim::mavlink::kSitlClockRate);
@@ -322,7 +330,13 @@ cli::Subcommand add_sim(const cli::Parser& jink) {
                "obstacles alone, for use beside PX4 SITL or a real vehicle; their clock runs at once");
   app.add_flag("--dds-vehicle", options->dds_vehicle,
                "the vehicles on PX4's DDS topics too, as its uXRCE-DDS agent has them: fmu/out/"
-               "vehicle_local_position_v1, fmu/in/trajectory_setpoint; instance N > 0 in namespace px4_N");
+               "vehicle_local_position_v1 (or of the release's version), fmu/in/trajectory_setpoint; instance N > 0 in "
+               "namespace px4_N");
+  app.add_option("--px4", options->px4,
+                 "the release of PX4 that the vehicles play where releases differ: version, parameters, heartbeat, "
+                 "layout of the position on DDS")
+      .one_of({"1.14", "1.16", "1.17", "1.18"})
+      .show_default();
   app.add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer publishes the obstacles");
   app.add_option("--domain", options->domain, "DDS domain, 0 to 232")
       .transform(cli::whole_number(0, 232))

@@ -183,6 +183,13 @@ TEST(Doctor, KnowsWhatTheParametersDo) {
     EXPECT_EQ(find(checks, name).level, level) << name << " = " << value << ": " << find(checks, name).finding;
     EXPECT_EQ(find(checks, name).remedy.empty(), level == Level::kOk) << name << " = " << value;
   }
+  // As of PX4 1.18: out of modes flown by hand it goes to hold, and does nothing else.
+  EXPECT_EQ(
+      find(inspect_parameters(
+               {{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}, {"NAV_RCL_ACT", {"NAV_RCL_ACT", true, 7.0}}}, false),
+           "COM_RCL_EXCEPT")
+          .level,
+      Level::kOk);
   // With a remote control at hand its loss is no surprise.
   EXPECT_EQ(find(inspect_parameters({{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}}, true), "COM_RCL_EXCEPT").level,
             Level::kOk);

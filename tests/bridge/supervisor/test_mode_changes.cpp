@@ -37,6 +37,25 @@ TEST(ModeChanges, AnotherModeIsATakeoverWhereverTheVehicleIsOurs) {
   }
 }
 
+// PX4 before 1.15 says CRITICAL for a low battery too.
+TEST(ModeChanges, ATakeoverIsOneThoughAWarningWasCriticalBefore) {
+  Judged flight;
+  flight.state.failsafe = true;
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kNone);
+  EXPECT_FALSE(flight.changes.failsafe());
+  flight.state.mode = vehicle::FlightMode::kPosition;
+  EXPECT_EQ(flight.judge(Phase::kFlying), ModeChange::kTakeover);
+
+  Judged recovered;
+  recovered.state.failsafe = true;
+  EXPECT_EQ(recovered.judge(Phase::kFlying), ModeChange::kNone);
+  recovered.state.failsafe = false;
+  EXPECT_EQ(recovered.judge(Phase::kFlying), ModeChange::kNone);
+  recovered.state.failsafe = true;
+  recovered.state.mode = vehicle::FlightMode::kPosition;
+  EXPECT_EQ(recovered.judge(Phase::kFlying), ModeChange::kFailsafePasses);
+}
+
 TEST(ModeChanges, BeforeOffboardTheModeOfBeforeIsTheOneToStay) {
   ModeChanges changes;
   vehicle::VehicleState state;

@@ -111,6 +111,30 @@ TEST_F(SimulatedDds, FliesOnDdsAlone) {
   EXPECT_EQ(dds_.malformed(), 0U);
 }
 
+TEST_F(SimulatedDds, TellsThePositionInEachReleasesLayout) {
+  using jink::sim::vehicle::Px4Version;
+  for (const Px4Version version : {Px4Version::k1_14, Px4Version::k1_16, Px4Version::k1_18}) {
+    const std::string name = "px4_" + std::to_string(4 + static_cast<int>(version));
+    VehicleTopics topics(vehicle_, name, version);
+    DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = false, .name_space = name});
+    ASSERT_TRUE(eventually([&] {
+      topics.step(autopilot_.time(), autopilot_);
+      autopilot_.step();
+      return link.state().local_position_ok;
+    }));
+    EXPECT_LT((link.state().motion.value.position - Vec3(1, 2, 3)).norm(), 0.01);
+    EXPECT_NEAR(link.state().yaw, airborne().yaw, 1e-3);
+    EXPECT_TRUE(link.state().origin);
+    EXPECT_EQ(link.counts().malformed, 0U);
+    const char* const topic =
+        version < Px4Version::k1_17 ? "out/vehicle_local_position" : "out/vehicle_local_position_v1";
+    jink::bridge::dds::PayloadReader reader(companion_, jink::bridge::dds::px4_topic(name, topic),
+                                            jink::bridge::dds::kLocalPositionType,
+                                            [](const Payload&, std::uint64_t) {});
+    EXPECT_TRUE(eventually([&] { return reader.writers() == 1; })) << name;
+  }
+}
+
 TEST_F(SimulatedDds, TellsOfJumps) {
   DdsVehicleLink link(under_, companion_, clock_, {.state = true, .setpoints = false, .name_space = "px4_3"});
   ASSERT_TRUE(step_until([&] { return link.state().local_position_ok; }));

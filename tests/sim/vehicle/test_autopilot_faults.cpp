@@ -326,6 +326,28 @@ TEST(Refusals, AnOffboardThatFliesGoesOnButDoesNotComeBack) {
   EXPECT_TRUE(flight.autopilot.offboard_active());
 }
 
+TEST(Px4Releases, DifferInParametersAndInWhatIsCritical) {
+  struct Case {
+    Px4Version version;
+    bool critical;
+    bool sticks_by_speed;
+  };
+  for (const Case& c : {Case{Px4Version::k1_14, true, false}, Case{Px4Version::k1_16, false, false},
+                        Case{Px4Version::k1_17, false, false}, Case{Px4Version::k1_18, false, true}}) {
+    AutopilotOptions options = airborne_options({0, 0, 10});
+    options.version = c.version;
+    OffboardFlight flight({0, 0, 10}, &options);
+    flight.autopilot.set_battery(0.12);
+    flight.run(0.1, &flight.here);
+    expect_heartbeat(flight.autopilot, 0x91, 0x00060000, c.critical ? 5 : 4);
+    EXPECT_FALSE(flight.autopilot.in_failsafe());
+    const Parameters& parameters = flight.autopilot.parameters();
+    EXPECT_EQ(parameters.find("MAN_OVERRIDE_SPD").has_value(), c.sticks_by_speed);
+    for (const char* gone : {"COM_RC_OVERRIDE", "COM_RC_STICK_OV", "COM_OBC_LOSS_T"})
+      EXPECT_EQ(parameters.find(gone).has_value(), !c.sticks_by_speed) << gone;
+  }
+}
+
 TEST(Home, FollowsTheVehicleWhileItIsDisarmedUnlessItWasSet) {
   Flight flight(instant_options());
   flight.fly_offboard({4, 0, 2});
