@@ -18,7 +18,7 @@ std::string progress_text(const ProgressStatus& s) {
   if (s.nearest && !std::isfinite(*s.nearest)) text += "  nothing near";
   if (s.plan_ms) text += fmt::format("  plan {:.0f} ms", *s.plan_ms);
   if (s.speed) text += fmt::format("  {:.1f} m/s", *s.speed);
-  if (s.height) text += fmt::format("  z {:.1f} m estimated", *s.height);
+  if (s.height) text += fmt::format("  z {:.1f} m{}", *s.height, s.estimated ? " estimated" : "");
   if (s.tracks) text += fmt::format("  {} track{}", *s.tracks, *s.tracks == 1 ? "" : "s");
   return text;
 }
@@ -49,6 +49,7 @@ void FlightProgress::on_state(double t, const bridge::vehicle::VehicleState& sta
   if (known) {
     status_.speed = state.motion.value.velocity.norm();
     status_.height = state.motion.value.position.z();
+    status_.estimated = true;
     find_progress(state.motion.value.position);
   }
   find_stale(t, state);

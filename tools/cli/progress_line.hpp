@@ -20,7 +20,8 @@ struct ProgressStatus {
   std::optional<double> progress{};     ///< share of the way to the last waypoint, 0 to 1
   std::optional<double> to_go{};        ///< m, to the last waypoint
   std::optional<double> speed{};        ///< m/s
-  std::optional<double> height{};       ///< m
+  std::optional<double> height{};       ///< m, z
+  bool estimated = false;               ///< z is the autopilot's estimate, and no height above the ground
   std::optional<double> nearest{};      ///< m of free air to the nearest obstacle; infinite: there is none
   std::optional<std::size_t> tracks{};  ///< their number
   std::optional<double> plan_ms{};      ///< the newest plan's time

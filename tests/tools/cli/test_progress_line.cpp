@@ -22,6 +22,8 @@ TEST(LiveText, TellsWhatIsKnownAndNoMore) {
   status.plan_ms = 12.4;
   status.speed = 3.0;
   status.height = 1.5;
+  EXPECT_TRUE(progress_text(status).ends_with("z 1.5 m"));
+  status.estimated = true;
   status.tracks = 1;
   status.stale = {"tracks 1.4 s old", "position 0.6 s old"};
   EXPECT_EQ(progress_text(status),
