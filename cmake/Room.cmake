@@ -10,16 +10,15 @@ function(jink_precompile name)
   target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
 endfunction()
 
-# jink_room_headers(VARIABLE): the include folder of the room it is called in.
-function(jink_room_headers variable)
+# jink_room_headers(): sets, of the room it is called in, `folder`, `name` (bridge_tracking) and its include folder `include`.
+macro(jink_room_headers)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name ${folder})
   set(include ${PROJECT_BINARY_DIR}/rooms/${name})
   get_filename_component(parent ${include}/${folder} DIRECTORY)
   file(MAKE_DIRECTORY ${parent})
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include}/${folder} SYMBOLIC)
-  set(${variable} ${include} PARENT_SCOPE)
-endfunction()
+endmacro()
 
 # jink_room([LINK targets...] [PRIVATE targets...] [SOURCES generated files...] [OWN_OPTIONS])
 # Makes the library of the room it is called in, of all *.cpp there: bridge/tracking gives jink::bridge::tracking.
@@ -27,10 +26,8 @@ endfunction()
 # precompiled headers were not made with.
 function(jink_room)
   cmake_parse_arguments(R "OWN_OPTIONS" "" "LINK;PRIVATE;SOURCES" ${ARGN})
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  string(REPLACE "/" "_" name ${folder})
+  jink_room_headers()
   string(REPLACE "/" "::" alias ${folder})
-  jink_room_headers(include)
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   if(sources)
     add_library(jink_${name} STATIC ${sources} ${R_SOURCES})

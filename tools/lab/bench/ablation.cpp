@@ -32,7 +32,6 @@ constexpr int kReferenceFactor = 10;            // generations of the reference 
 constexpr double kSteeringShare = 0.01;         // of f2 and f3 in the score
 constexpr double kClearanceShare = 0.3;
 constexpr double kSame = 1e-9;  // scores nearer than this count as equal
-constexpr std::uint64_t kSeed = 1;
 
 /// A way to search, for horizon plans.
 struct Variant {

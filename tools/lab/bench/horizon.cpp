@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kPeriod = 0.1;   // s, between plans
 constexpr double kArrived = 0.5;  // m, from a target: now back to the other
-constexpr std::uint64_t kSeed = 1;
 
 constexpr int kFarEvery = 20;        // rounds; the plans with far targets take long
 constexpr double kFarShare = 0.975;  // of the volume's length

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "tools/lab/statistics/samples.hpp"
 
 namespace jink::tools::lab::bench {
+
+inline constexpr std::uint64_t kSeed = 1;  ///< of what has one
 
 /// How much is measured. `--quick` keeps every table and takes few samples.
 struct Options {
