@@ -16,14 +16,17 @@ namespace jink::support {
 #define JINK_SANITIZED 1
 #endif
 
+#ifdef JINK_SANITIZED
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 /// All of `cases`; under a sanitizer the first.
 template <class Case>
 std::vector<Case> repetitions(std::initializer_list<Case> cases) {
-#ifdef JINK_SANITIZED
-  return {*cases.begin()};
-#else
+  if (kSanitized) return {*cases.begin()};
   return cases;
-#endif
 }
 
 }  // namespace jink::support
