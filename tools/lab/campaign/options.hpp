@@ -41,6 +41,21 @@ void make_folder(const std::filesystem::path& out);
 /// Throws UsageError where an earlier run's settings differ.
 void require_same(const std::vector<std::string>& differences, const std::string& out);
 
+/// What an earlier call left in `file`, which is in `out`, by `read(file)`; or nothing yet, with these settings.
+/// `count(earlier)` says how much that is: "3 flights of an earlier run". Throws UsageError where it is in the way.
+template <class Results, class Settings, class Read, class Count>
+Results resumed(const std::filesystem::path& file, const Settings& settings, const std::string& out, bool resume,
+                const cli::Printer& printer, const Read& read, const Count& count) {
+  Results earlier;
+  earlier.settings = settings;
+  if (!goes_on(file, out, resume, printer)) return earlier;
+  earlier = read(file);
+  require_same(differences(earlier.settings, out, settings, "this call"), out);
+  printer.line("resuming: " + count(earlier) +
+               (earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
+  return earlier;
+}
+
 /// An option without effect beside `mode` is refused with a UsageError.
 void refuse_beside(const cli::Parser& app, const char* mode, const std::vector<std::string>& useless);
 

@@ -107,24 +107,14 @@ void conclude(const arena::Results& results, const ArenaOptions& options, const 
   cli::write_json(options.common.json, arena::summary_json(results, summary, out));
 }
 
-/// What an earlier run left, or nothing yet. Throws UsageError where it is in the way.
-arena::Results begin(const arena::CampaignSettings& settings, const ArenaOptions& options,
-                     const cli::Printer& printer) {
-  const fs::path file = arena::results_path(options.out);
-  arena::Results results;
-  results.settings = settings;
-  if (!campaign::goes_on(file, options.out, options.resume, printer)) return results;
-  arena::Results earlier = arena::read_results(file);
-  campaign::require_same(arena::differences(earlier.settings, options.out, settings, "this call"), options.out);
-  printer.line(fmt::format("resuming: {} flights of an earlier run{}", earlier.flights.size(),
-                           earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
-  return earlier;
-}
-
 int run_campaign(const ArenaOptions& options, const cli::Printer& printer) {
   const config::Settings planner = options.common.settings();
   const arena::CampaignSettings settings = settings_of(options, planner);
-  arena::Results results = begin(settings, options, printer);
+  arena::Results results =
+      campaign::resumed<arena::Results>(arena::results_path(options.out), settings, options.out, options.resume,
+                                        printer, arena::read_results, [](const arena::Results& earlier) {
+                                          return fmt::format("{} flights of an earlier run", earlier.flights.size());
+                                        });
   campaign::make_folder(options.out);
   cli::require_json(options.common.json);
   arena::ResultsFile file(arena::results_path(options.out), results);

@@ -72,23 +72,12 @@ void conclude(const study::Results& results, const study::Setting& setting, cons
   cli::write_json(options.common.json, summary);
 }
 
-/// What an earlier run left, or nothing yet. Throws UsageError where it is in the way.
-study::Results begin(const study::StudySettings& settings, const StudyOptions& options, const cli::Printer& printer) {
-  const fs::path file = study::results_path(options.out);
-  study::Results results;
-  results.settings = settings;
-  if (!campaign::goes_on(file, options.out, options.resume, printer)) return results;
-  study::Results earlier = study::read_results(file);
-  campaign::require_same(study::differences(earlier.settings, options.out, settings, "this call"), options.out);
-  printer.line(fmt::format("resuming: {} runs of an earlier call{}", earlier.runs.size(),
-                           earlier.cut_off ? " (its last line was cut off and does not count)" : ""));
-  return earlier;
-}
-
 int run_study(const StudyOptions& options, const cli::Printer& printer) {
   const config::Settings planner = options.common.settings();
   const study::StudySettings settings = settings_of(options, planner);
-  study::Results results = begin(settings, options, printer);
+  study::Results results = campaign::resumed<study::Results>(
+      study::results_path(options.out), settings, options.out, options.resume, printer, study::read_results,
+      [](const study::Results& earlier) { return fmt::format("{} runs of an earlier call", earlier.runs.size()); });
   jink::tools::figures::require_gnuplot();
   const study::Setting setting(settings, planner);
   campaign::make_folder(options.out);
