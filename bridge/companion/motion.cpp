@@ -13,7 +13,6 @@ constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns 
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
 constexpr double kTakeoffTolerance = 0.3;  // m
-constexpr double kForgetting = 5.0;        // s, in which a tracking error fades to a third
 
 using Motion = supervisor::Decision::Motion;
 
@@ -83,7 +82,7 @@ void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
     point.t += result.job.start + waited;
     point.position += shift;
   }
-  stream_.follow(std::move(path));
+  stream_.follow(std::move(path), result.job.offset);
   new_plan_ = true;
   if (result.job.newest_track) unsent_track_ = UnsentTrack{*result.job.newest_track, result.job.start};
 }
@@ -127,10 +126,10 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
 void MotionControl::observe(double now, double dt, const vehicle::VehicleState& state) {
   if (!stream_.active() || state.motion.age(now) > settings_.companion.stale_state) return;
   stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity, dt);
-  const double off = error(state);
   double& largest = reporter_.summary().largest_tracking_error;
-  largest = std::max(largest, off);
-  tracking_error_ = std::max(off, tracking_error_ * std::exp(-dt / kForgetting));
+  largest = std::max(largest, error(state));
+  if (lost(state)) return offset_.forget();
+  offset_.observe(state.motion.stamp, state.motion.value.position - stream_.reference(state.motion.stamp).position);
 }
 
 void MotionControl::shift(const Vec3& by) {
@@ -144,7 +143,7 @@ double MotionControl::error(const vehicle::VehicleState& state) const {
 
 double MotionControl::margin() const {
   const double least = settings_.horizon.margin;
-  return std::clamp(tracking_error_, least, std::max(least, settings_.companion.margin_limit));
+  return std::clamp(offset_.error().value_or(least), least, std::max(least, settings_.companion.margin_limit));
 }
 
 bool MotionControl::at_takeoff_height(const vehicle::VehicleState& state) const {

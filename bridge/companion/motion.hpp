@@ -44,10 +44,10 @@ class MotionControl {
   [[nodiscard]] double error(const vehicle::VehicleState& state) const;
   /// So far from its reference the vehicle has lost it.
   [[nodiscard]] bool lost(const vehicle::VehicleState& state) const { return error(state) > kLostReference; }
-  /// The largest error of late.
-  [[nodiscard]] double tracking_error() const { return tracking_error_; }
-  /// What plans are to keep from obstacles: the margin of the settings, or what tracking has been off by of late where
-  /// that is more.
+  /// How far the vehicle is beside its reference, and how well that is foreseen.
+  [[nodiscard]] const setpoints::TrackingOffset& offset() const { return offset_; }
+  /// What plans are to keep from obstacles: the margin of the settings, or what the vehicle was off from where it was
+  /// expected where that is more.
   [[nodiscard]] double margin() const;
   /// s, for which setpoints could not be sent.
   [[nodiscard]] double unsent_for(double now) const { return unsent_since_ ? now - *unsent_since_ : 0.0; }
@@ -72,7 +72,7 @@ class MotionControl {
   FlightReporter& reporter_;
   setpoints::SetpointStream stream_;
   Vec3 takeoff_point_ = Vec3::Zero();
-  double tracking_error_ = 0.0;  // the largest of late, forgotten slowly
+  setpoints::TrackingOffset offset_;
   std::optional<double> last_sent_;
   bool new_plan_ = false;  // since then
   std::optional<UnsentTrack> unsent_track_;

@@ -13,6 +13,7 @@
 #include "bridge/base/clock.hpp"
 #include "bridge/base/notifier.hpp"
 #include "bridge/prediction/forecast.hpp"
+#include "bridge/setpoints/tracking_offset.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 
 namespace jink::bridge::companion {
@@ -28,6 +29,7 @@ struct PlanJob {
   double begun = 0.0;
   double start = 0.0;
   std::optional<double> newest_track;  ///< reception of the newest track message that went in
+  setpoints::OffsetForecast offset;    ///< of the vehicle from its reference, that the request was made with
   double waited = 0.0;                 ///< s, SetpointStream::waited() that the request was made with
   Vec3 estimate_shift = Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };

@@ -11,6 +11,14 @@ constexpr double kInset = 0.05;       // of the flight volume, at most, that pat
 constexpr double kInsetMargin = 0.3;  // of the margin, likewise
 constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
 
+// The path as it will be flown from where the vehicle is beside it: back to it smoothly.
+planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& from) {
+  const double left = path.back().t - path.front().t;
+  return setpoints::OffsetForecast{path.front().t, from - path.front().position,
+                                   std::min(setpoints::OffsetForecast::kFade, left)}
+      .added_to(std::move(path));
+}
+
 }  // namespace
 
 std::optional<PlanResult> Planning::take(double now) {
@@ -57,10 +65,13 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
 
   const bool lost = motion.lost(state);
   reporter_.reference_lost(now, lost, motion.error(state));
+  // The plan begins where the vehicle will be, which is beside its reference.
+  if (!lost) job.offset = motion.offset().forecast();
   const planner::base::TimedPoint reference = stream.reference(job.start);
+  const planner::base::TimedPoint offset = job.offset.at(job.start);
   planner::horizon::PathRequest& request = job.request;
-  request.position = lost ? base::position_at(state.motion, job.start) : reference.position;
-  request.velocity = lost ? state.motion.value.velocity : reference.velocity;
+  request.position = lost ? base::position_at(state.motion, job.start) : Vec3(reference.position + offset.position);
+  request.velocity = lost ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
   request.target = route.target();
   request.vehicle = mission_.vehicle;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
@@ -77,9 +88,10 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.acceleration_trust = settings_.horizon.acceleration_trust;
   if (!lost) {
     job.previous = stream.plan(job.start);
-    for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
     // A plan to another waypoint is no plan to keep.
     if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
+    if (!job.previous.empty()) job.previous = rejoined(std::move(job.previous), request.position);
+    for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
   }
   return job;
 }

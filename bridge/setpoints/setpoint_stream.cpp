@@ -30,7 +30,7 @@ void SetpointStream::hold(const Vec3& position, double now) {
   is_braking_ = false;
 }
 
-void SetpointStream::follow(planner::base::TimedPath path) {
+void SetpointStream::follow(planner::base::TimedPath path, const OffsetForecast& offset) {
   assert(!path.empty());
   if (!next_.empty()) {
     // The one that waits for its start, or was followed till now, goes on where the present one ends.
@@ -45,7 +45,8 @@ void SetpointStream::follow(planner::base::TimedPath path) {
     }
     current_.insert(current_.end(), next_.begin(), next_.end());
   }
-  next_ = std::move(path);
+  planned_ = std::move(path);
+  next_ = offset.taken_off(planned_);
   if (current_.empty()) current_ = next_;
   is_plan_ = true;
   is_braking_ = false;
@@ -89,13 +90,13 @@ double SetpointStream::deceleration(const Vec3& position, const Vec3& velocity) 
 }
 
 void SetpointStream::shift(const Vec3& by) {
-  for (planner::base::TimedPoint& point : current_) point.position += by;
-  for (planner::base::TimedPoint& point : next_) point.position += by;
+  for (planner::base::TimedPath* path : {&current_, &next_, &planned_})
+    for (planner::base::TimedPoint& point : *path) point.position += by;
 }
 
 void SetpointStream::wait(double dt) {
-  for (planner::base::TimedPoint& point : current_) point.t += dt;
-  for (planner::base::TimedPoint& point : next_) point.t += dt;
+  for (planner::base::TimedPath* path : {&current_, &next_, &planned_})
+    for (planner::base::TimedPoint& point : *path) point.t += dt;
   waited_ += dt;
 }
 
@@ -126,7 +127,7 @@ vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
 
 planner::base::TimedPath SetpointStream::plan(double t) const {
   if (!is_plan_) return {};
-  return planner::base::remainder(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
+  return planner::base::remainder(planned_, t);
 }
 
 planner::base::TimedPath SetpointStream::ahead(double t) const {

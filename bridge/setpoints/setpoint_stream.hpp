@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "bridge/setpoints/tracking_offset.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "planner/base/trajectory.hpp"
 
@@ -28,8 +29,9 @@ class SetpointStream {
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
   /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed
-  /// before. Precondition: not empty.
-  void follow(planner::base::TimedPath path);
+  /// before. `offset`: what the vehicle is expected to be beside its reference, which is led so much beside the path.
+  /// Precondition: not empty.
+  void follow(planner::base::TimedPath path, const OffsetForecast& offset = {});
   /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity,
   /// then holds there. Where that would lead out of `volume` it brakes as hard as it takes to stay inside, up to
   /// `hardest`. Does nothing while a brake is on.
@@ -54,7 +56,8 @@ class SetpointStream {
 
   [[nodiscard]] bool active() const { return !current_.empty(); }
   [[nodiscard]] bool braking() const { return is_braking_; }
-  /// The path followed at time t, for the planner's warm start; empty while holding or braking.
+  /// The path that follow() was given last, from time t on, for the planner's warm start; empty while holding or
+  /// braking.
   [[nodiscard]] planner::base::TimedPath plan(double t) const;
   /// All that is followed from time t on, the path that waits for its start, a stop and a stay included: reference() as
   /// a path. Precondition: active().
@@ -70,7 +73,8 @@ class SetpointStream {
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::base::TimedPath current_;
-  planner::base::TimedPath next_;  // takes over at its first time
+  planner::base::TimedPath next_;     // takes over at its first time
+  planner::base::TimedPath planned_;  // the path that the vehicle is to fly along next_
 };
 
 }  // namespace jink::bridge::setpoints

@@ -40,7 +40,7 @@ struct Loop {
     if (obeys) obey();
     const bool flies = state.armed && state.mode == vehicle::FlightMode::kOffboard && !link.sent.empty() && follows;
     if (flies) {
-      state.motion.value.position = link.sent.back().position;
+      state.motion.value.position = link.sent.back().position + beside;
       state.motion.value.velocity = link.sent.back().velocity;
       state.in_air = state.in_air || state.motion.value.position.z() > 0.2;
     }
@@ -82,6 +82,7 @@ struct Loop {
   Recorder recorder;
   companion::Companion companion;
   std::vector<planner::base::Track> seen;
+  Vec3 beside = Vec3::Zero();  // what the vehicle is off its setpoint
   double now = 0.0;
   bool heartbeats = true, positions = true, tracks = true, obeys = true, follows = true;
   std::size_t obeyed = 0;

@@ -41,6 +41,7 @@ config::Scenario straight() {
   scenario.start = {0, 0, 1.5};
   scenario.target = {6, 0, 1.5};
   scenario.time_limit = 20.0;
+  scenario.estimate.px4 = false;
   return scenario;
 }
 

@@ -25,6 +25,7 @@ config::Scenario swapping() {
   scenario.start = {0, 0, 3};
   scenario.target = {12, 0, 3};
   scenario.time_limit = 30;
+  scenario.estimate.px4 = false;
   scenario.vehicles = {{scenario.target, scenario.start, "ardrone2", {}}};
   return scenario;
 }

@@ -33,6 +33,7 @@ config::Scenario straight(std::vector<config::Obstacle> obstacles = {}) {
   scenario.start = {0, 0, 1.5};
   scenario.target = {12, 0, 1.5};
   scenario.time_limit = 40.0;
+  scenario.estimate.px4 = false;
   scenario.obstacles = std::move(obstacles);
   return scenario;
 }
