@@ -113,11 +113,13 @@ std::string read_namespace(const Value& value) {
 }
 
 TrackPolicy read_tracks(const Value& value) {
-  const Map map(value, {"required", "timeout_s", "coast_s", "sources"});
+  const Map map(value, {"required", "timeout_s", "coast_s", "sensed_from", "sources"});
   TrackPolicy tracks;
   if (const auto required = map.find("required")) tracks.required = required->boolean();
   tracks.timeout_s = map.number_or("timeout_s", above(0, 60), tracks.timeout_s);
   tracks.coast_s = map.number_or("coast_s", closed(0, 60), tracks.coast_s);
+  if (const auto from = map.find("sensed_from"))
+    tracks.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
   if (const auto sources = map.find("sources")) tracks.sources = read_sources(*sources);
   return tracks;
 }

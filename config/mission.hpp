@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "config/sensed_from.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::config {
@@ -27,6 +28,7 @@ struct TrackPolicy {
   bool required = true;    ///< no flight without a live track writer
   double timeout_s = 1.0;  ///< silence of the writers after which the tracks are stale
   double coast_s = 1.0;    ///< how long a track that is no longer reported is predicted on
+  SensedFrom sensed_from = SensedFrom::kWorld;
   TrackSources sources;
 };
 

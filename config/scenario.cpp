@@ -17,7 +17,6 @@ constexpr Range kSize = above(0, 1e3);
 constexpr Range kAngle = within(1e6);
 constexpr std::size_t kMostObstacles = 10000;
 constexpr std::size_t kMostPoints = 10000;
-constexpr std::array<std::string_view, 2> kSensedFrom = {"world", "vehicle"};  // SensedFrom's values
 constexpr std::array<std::string_view, 2> kEstimates = {"px4", "none"};
 constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/faults.hpp"
+#include "config/sensed_from.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::config {
@@ -73,10 +74,6 @@ struct Obstacle {
   Motion motion;
   bool operator==(const Obstacle&) const = default;
 };
-
-/// In which frame tracks are right: an external tracker's in the world's; onboard perception's relative to the vehicle,
-/// so that they carry the error of its estimate along.
-enum class SensedFrom { kWorld, kVehicle };
 
 /// How the world is measured: what the tracks look like.
 struct Sensing {

@@ -98,7 +98,8 @@ std::string vehicle_text(const std::string& name, const planner::base::VehicleLi
   map.add("radius", limits.radius).add("length", limits.length).add("mass", limits.mass);
   map.add("max_speed", limits.max_speed).add("cruise_speed", limits.cruise_speed);
   map.add("max_acceleration", limits.max_acceleration).add("max_jerk", limits.max_jerk);
-  return map.add("max_climb", limits.max_climb).text();
+  map.add("max_climb", limits.max_climb);
+  return map.add_unless(0.0, "drag", limits.drag).add_unless(0.0, "damping", limits.damping).text();
 }
 
 std::string sensing_text(const Sensing& sensing) {

@@ -106,8 +106,6 @@ constexpr Field<CompanionSettings> kCompanion[] = {
     {"commitment", &CompanionSettings::commitment, closed(0, 5)},
     {"setpoint_lead", &CompanionSettings::setpoint_lead, closed(0, 10)},
     {"acceleration_lead", &CompanionSettings::acceleration_lead, closed(0, 10)},
-    {"drag", &CompanionSettings::drag, closed(0, 5)},
-    {"acceleration_damping", &CompanionSettings::acceleration_damping, closed(0, 1)},
     {"stale_state", &CompanionSettings::stale_state, above(0, 60)},
     {"stale_plan", &CompanionSettings::stale_plan, above(0, 60)},
     {"margin_limit", &CompanionSettings::margin_limit, closed(0, 10)},

@@ -24,10 +24,8 @@ struct CompanionSettings {
   /// What counts of acceleration_lead. Beyond the commitment a plan may be replaced before it is flown: the vehicle
   /// would accelerate for motions that never come about.
   [[nodiscard]] double committed_acceleration_lead() const { return std::min(acceleration_lead, commitment); }
-  double drag = 1.0;  ///< 1/s, deceleration per speed that the feed-forward makes up for; PX4's SITL shows 1.0
-  double acceleration_damping = 0.2;  ///< share of a commanded acceleration that the autopilot takes off again
-  double stale_state = 0.2;           ///< age of the vehicle's position at which to brake
-  double stale_plan = 0.3;            ///< age of the newest plan at which to brake
+  double stale_state = 0.2;   ///< age of the vehicle's position at which to brake
+  double stale_plan = 0.3;    ///< age of the newest plan at which to brake
   double margin_limit = 0.8;  ///< the most that the tracking error measured in flight may make of horizon.margin
 };
 

@@ -16,10 +16,11 @@ struct Limit {
   std::string_view name;
   double planner::base::VehicleLimits::*member;
   Range range;
+  bool required = true;
 };
 
 // No aircraft of this kind comes near the upper bounds; a value beyond them is in the wrong unit.
-constexpr std::array<Limit, 8> kLimits = {{
+constexpr std::array<Limit, 10> kLimits = {{
     {"radius", &planner::base::VehicleLimits::radius, above(0, 100)},
     {"length", &planner::base::VehicleLimits::length, above(0, 100)},
     {"mass", &planner::base::VehicleLimits::mass, above(0, 10000)},
@@ -28,6 +29,8 @@ constexpr std::array<Limit, 8> kLimits = {{
     {"max_acceleration", &planner::base::VehicleLimits::max_acceleration, above(0, 1000)},
     {"max_jerk", &planner::base::VehicleLimits::max_jerk, above(0, 100000)},
     {"max_climb", &planner::base::VehicleLimits::max_climb, above(0, 1000)},
+    {"drag", &planner::base::VehicleLimits::drag, closed(0, 2), false},
+    {"damping", &planner::base::VehicleLimits::damping, closed(0, 0.5), false},
 }};
 
 planner::base::VehicleLimits read_limits(const Value& value) {
@@ -36,7 +39,10 @@ planner::base::VehicleLimits read_limits(const Value& value) {
   for (const Limit& limit : kLimits) keys.push_back(limit.name);
   const Map map(value, std::move(keys));
   planner::base::VehicleLimits limits;
-  for (const Limit& limit : kLimits) limits.*limit.member = map.number(limit.name, limit.range);
+  for (const Limit& limit : kLimits) {
+    double& member = limits.*limit.member;
+    member = limit.required ? map.number(limit.name, limit.range) : map.number_or(limit.name, limit.range, member);
+  }
   if (limits.cruise_speed > limits.max_speed) {
     map.at("cruise_speed", "").fail("is above max_speed; expected a number in " + above(0, limits.max_speed).text());
   }

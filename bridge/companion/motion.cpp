@@ -35,27 +35,31 @@ MotionControl::MotionControl(const config::Mission& mission, const config::Setti
       link_(link),
       clock_(clock),
       reporter_(reporter),
-      stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(),
-               settings.companion.drag, settings.companion.acceleration_damping, settings.horizon.braking,
-               mission.vehicle.max_acceleration, flight_volume(mission), mission.vehicle.max_speed}) {}
+      stream_({settings.companion.setpoint_lead, settings.companion.committed_acceleration_lead(), mission.vehicle.drag,
+               mission.vehicle.damping, settings.horizon.braking, mission.vehicle.max_acceleration,
+               flight_volume(mission), mission.vehicle.max_speed}) {}
 
 void MotionControl::steer(double now, Motion motion, supervisor::Phase phase, const vehicle::VehicleState& state) {
   if (motion == Motion::kTakeoffPoint) take_off(now, phase, state);
   // Until OFFBOARD is confirmed the vehicle may be moving: it is to stop where it is then, not to come back.
-  if (motion == Motion::kStay) stream_.hold(state.motion.value.position, now);
+  if (motion == Motion::kStay) {
+    takeoff_point_.reset();
+    stream_.hold(state.motion.value.position, now);
+  }
   if (motion == Motion::kBrake) brake(now, state);
   if (!stream_.active()) stream_.hold(state.motion.value.position, now);
 }
 
 void MotionControl::take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state) {
-  if (!stream_.active() || phase == supervisor::Phase::kEngaging) {
-    takeoff_point_ = state.motion.value.position;
-    takeoff_point_.z() = std::max(state.motion.value.position.z() + mission_.takeoff_height, mission_.min_height);
-    takeoff_point_.z() =
-        std::min(takeoff_point_.z(), std::max(mission_.geofence.max.z(), state.motion.value.position.z()));
-    stream_.hold(takeoff_point_, now);
+  if (!takeoff_point_ || phase == supervisor::Phase::kEngaging) {
+    const Vec3& position = state.motion.value.position;
+    const double height = state.in_air ? position.z() : position.z() + mission_.takeoff_height;
+    takeoff_point_ = position;
+    takeoff_point_->z() =
+        std::min(std::max(height, mission_.min_height), std::max(mission_.geofence.max.z(), position.z()));
+    stream_.hold(*takeoff_point_, now);
   } else if (stream_.braking()) {  // a hazard of the climb has passed
-    stream_.hold(takeoff_point_, now);
+    stream_.hold(*takeoff_point_, now);
   }
 }
 
@@ -77,9 +81,8 @@ void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
   planner::base::TimedPath path = std::move(result.plan.path);
   // Of the time that the plan took.
   const Vec3 shift = estimate_shift - result.job.estimate_shift;
-  const double waited = stream_.waited() - result.job.waited;
   for (planner::base::TimedPoint& point : path) {
-    point.t += result.job.start + waited;
+    point.t += result.job.start;
     point.position += shift;
   }
   stream_.follow(std::move(path), result.job.offset);
@@ -134,7 +137,7 @@ void MotionControl::observe(double now, double dt, const vehicle::VehicleState& 
 
 void MotionControl::shift(const Vec3& by) {
   stream_.shift(by);
-  takeoff_point_ += by;
+  if (takeoff_point_) *takeoff_point_ += by;
 }
 
 double MotionControl::error(const vehicle::VehicleState& state) const {
@@ -147,7 +150,7 @@ double MotionControl::margin() const {
 }
 
 bool MotionControl::at_takeoff_height(const vehicle::VehicleState& state) const {
-  return takeoff_point_.z() - state.motion.value.position.z() < kTakeoffTolerance;
+  return !takeoff_point_ || takeoff_point_->z() - state.motion.value.position.z() < kTakeoffTolerance;
 }
 
 }  // namespace jink::bridge::companion

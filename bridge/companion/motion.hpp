@@ -28,8 +28,7 @@ class MotionControl {
   /// Makes the reference that of the decision: the take-off point, a stay, a brake. Not for Motion::kNone.
   void steer(double now, supervisor::Decision::Motion motion, supervisor::Phase phase,
              const vehicle::VehicleState& state);
-  /// Follows a plan from its start, shifted by what the estimate has jumped since it was begun, later by what the
-  /// reference has waited.
+  /// Follows a plan from its start, shifted by what the estimate has jumped since it was begun.
   void follow(PlanResult result, const Vec3& estimate_shift);
   /// Sends a setpoint where one is due. `dt`: since the last step; `towards`: where the vehicle is to look, where it
   /// is to turn at all.
@@ -71,7 +70,7 @@ class MotionControl {
   const base::Clock* clock_;
   FlightReporter& reporter_;
   setpoints::SetpointStream stream_;
-  Vec3 takeoff_point_ = Vec3::Zero();
+  std::optional<Vec3> takeoff_point_;  // none: not taking off
   setpoints::TrackingOffset offset_;
   std::optional<double> last_sent_;
   bool new_plan_ = false;  // since then

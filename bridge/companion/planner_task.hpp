@@ -30,7 +30,6 @@ struct PlanJob {
   double start = 0.0;
   std::optional<double> newest_track;  ///< reception of the newest track message that went in
   setpoints::OffsetForecast offset;    ///< of the vehicle from its reference, that the request was made with
-  double waited = 0.0;                 ///< s, SetpointStream::waited() that the request was made with
   Vec3 estimate_shift = Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };
 

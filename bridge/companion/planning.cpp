@@ -2,13 +2,15 @@
 #include "bridge/companion/planning.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kInset = 0.05;       // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInset = 0.1;        // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;  // of the margin, likewise
+constexpr double kInsetSigmas = 2.0;  // of the estimate's position, likewise
 constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
 
 // The path as it will be flown from where the vehicle is beside it: back to it smoothly.
@@ -17,6 +19,16 @@ planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& fro
   return setpoints::OffsetForecast{path.front().t, from - path.front().position,
                                    std::min(setpoints::OffsetForecast::kFade, left)}
       .added_to(std::move(path));
+}
+
+// What is placed in the world's frame is off, for the vehicle, by what the vehicle's own place is.
+void blur(PlanJob& job, double sigma) {
+  const auto add = [sigma](auto& all) {
+    for (auto& one : all) one.position_sigma = std::hypot(one.position_sigma, sigma);
+  };
+  add(job.tracks);
+  add(job.forecasts);
+  add(job.paths);
 }
 
 }  // namespace
@@ -59,9 +71,9 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   job.start = now + std::max(planner_.latency(), settings_.companion.commitment);
   job.newest_track = intake.table().newest_message();
   job.estimate_shift = intake.estimate_shift();
-  job.waited = stream.waited();
   job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
+  if (mission_.tracks.sensed_from == config::SensedFrom::kWorld) blur(job, state.position_sigma);
 
   const bool lost = motion.lost(state);
   reporter_.reference_lost(now, lost, motion.error(state));
@@ -83,7 +95,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.margin = motion.margin();
   double& largest_margin = reporter_.summary().largest_margin;
   largest_margin = std::max(largest_margin, request.margin);
-  request.volume = volume(request.position, request.target, request.margin);
+  request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
   request.track_acceleration = settings_.horizon.track_acceleration;
   request.acceleration_trust = settings_.horizon.acceleration_trust;
   if (!lost) {
@@ -96,10 +108,11 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   return job;
 }
 
-planner::base::Box Planning::volume(const Vec3& start, const Vec3& target, double margin) const {
+planner::base::Box Planning::volume(const Vec3& start, const Vec3& target, double margin, double sigma) const {
   planner::base::Box box = flight_volume(mission_);
-  // The vehicle is off its path at times. Not by all of the margin: in a narrow corridor the room is needed to dodge.
-  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(kInsetMargin * margin);
+  // The vehicle is off its path at times, and its estimate is off. Not by all of the margin: in a narrow corridor the
+  // room is needed to dodge.
+  const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(kInsetMargin * margin + kInsetSigmas * sigma);
   box.min += inset;
   box.max -= inset;
   // Where the vehicle is already, a path may begin, and it may end where it is sent.

@@ -39,7 +39,7 @@ class Planning {
 
  private:
   [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, Route& route);
-  [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin) const;
+  [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
   void failed(double now, const std::exception& failure);
 
   const config::Mission& mission_;

@@ -114,6 +114,7 @@ void AutopilotTelemetry::on(const ExtendedSysState& message) {
 void AutopilotTelemetry::on(const EstimatorStatus& message) {
   estimator_ok_ = vehicle::px4::estimator_has_local_position(message.flags);
   info_.estimator = message.flags;
+  state_.position_sigma = vehicle::px4::position_sigma(message.horizontal_accuracy, message.vertical_accuracy);
 }
 
 void AutopilotTelemetry::on(const BatteryStatus& message) {

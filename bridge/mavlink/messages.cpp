@@ -121,6 +121,8 @@ bool read(const json& fields, ExtendedSysState& message) {
 }
 
 bool read(const json& fields, EstimatorStatus& message) {
+  message.horizontal_accuracy = number(fields, "pos_horiz_accuracy");
+  message.vertical_accuracy = number(fields, "pos_vert_accuracy");
   return read(fields, "flags", message.flags);
 }
 

@@ -58,6 +58,8 @@ struct ExtendedSysState {
 };
 struct EstimatorStatus {
   std::uint32_t flags = 0;
+  double horizontal_accuracy = 0.0;  ///< m, standard deviation of the distance; NaN: not stated
+  double vertical_accuracy = 0.0;    ///< m; likewise
 };
 struct BatteryStatus {
   std::uint32_t id = 0;

@@ -15,11 +15,14 @@ constexpr double kAtRest = 0.02;            // m/s
 constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
 constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
-constexpr double kSteady = 1.0;        // m/s², of the reference, above which a lag says more about attitude and rotors
-constexpr double kLearningRate = 0.4;  // 1/s² of drag for each metre of lag
-constexpr double kMostDrag = 2.0;      // 1/s
-constexpr double kSaturated = 0.95;    // of the largest speed
-constexpr double kWaiting = 2.0;       // of what the vehicle is late, that the reference waits for it in a second
+constexpr double kLearningRate = 1.0;       // 1/s
+constexpr double kMostDrag = 2.0;           // 1/s
+constexpr double kMostDamping = 0.5;
+// Of PX4's cascade (MPC_XY_P, MPC_XY_VEL_P_ACC): what it makes of errors is what the feed-forward lacked. Other gains
+// make the learning faster or slower.
+constexpr double kVelocityGain = 1.8;                   // 1/s
+constexpr double kPositionGain = 0.95 * kVelocityGain;  // 1/s²
+constexpr double kSaturated = 0.95;                     // of the largest speed
 
 }  // namespace
 
@@ -92,24 +95,22 @@ double SetpointStream::deceleration(const Vec3& position, const Vec3& velocity) 
 void SetpointStream::shift(const Vec3& by) {
   for (planner::base::TimedPath* path : {&current_, &next_, &planned_})
     for (planner::base::TimedPoint& point : *path) point.position += by;
-}
-
-void SetpointStream::wait(double dt) {
-  for (planner::base::TimedPath* path : {&current_, &next_, &planned_})
-    for (planner::base::TimedPoint& point : *path) point.t += dt;
-  waited_ += dt;
+  velocity_error_.forget();
 }
 
 void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity, double dt) {
+  velocity_error_.observe(t, position, velocity);
   if (!active() || !is_plan_) return;
   const planner::base::TimedPoint point = reference(t);
   const double speed = point.velocity.norm();
   if (speed < kLearningSpeed) return;
   const double lag = (point.position - position).dot(point.velocity) / speed;
-  if (lag > 0.0) wait(kWaiting * lag / speed * dt);
-  const bool saturated = lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed;
-  if (saturated || point.acceleration.norm() > kSteady) return;
-  drag_ = std::clamp(drag_ + kLearningRate * lag * dt, 0.0, kMostDrag);
+  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
+  const Vec3 lacking = kPositionGain * (point.position - position) +
+                       kVelocityGain * (point.velocity - velocity + velocity_error_.value());
+  const double step = kLearningRate * dt / (1.0 + point.velocity.squaredNorm() + point.acceleration.squaredNorm());
+  drag_ = std::clamp(drag_ + step * lacking.dot(point.velocity), 0.0, kMostDrag);
+  damping_ = std::clamp(damping_ + step * lacking.head<2>().dot(point.acceleration.head<2>()), 0.0, kMostDamping);
 }
 
 planner::base::TimedPoint SetpointStream::reference(double t) const {
@@ -120,9 +121,9 @@ planner::base::TimedPoint SetpointStream::reference(double t) const {
 vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
   const planner::base::TimedPoint point = reference(now + settings_.lead);
   const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead);
-  const double taken_off = 1.0 + settings_.damping;
+  const double taken_off = 1.0 + damping_;
   const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
-  return {point.position, point.velocity, acceleration + drag_ * later.velocity, yaw};
+  return {point.position, point.velocity + velocity_error_.value(), acceleration + drag_ * later.velocity, yaw};
 }
 
 planner::base::TimedPath SetpointStream::plan(double t) const {

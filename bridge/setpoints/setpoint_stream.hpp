@@ -24,7 +24,8 @@ class SetpointStream {
     planner::base::Box volume{};     ///< in which a brake is to end
     double max_speed = planner::base::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
   };
-  explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
+  explicit SetpointStream(const Settings& settings)
+      : settings_(settings), drag_(settings.drag), damping_(settings.damping) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
@@ -41,18 +42,16 @@ class SetpointStream {
 
   /// Where the vehicle is to be at time t. Precondition: active().
   [[nodiscard]] planner::base::TimedPoint reference(double t) const;
-  /// The setpoint to send at `now`, heading `yaw`.
+  /// The setpoint to send at `now`, heading `yaw`. Its velocity is by how much the estimate of the velocity is off
+  /// (VelocityError), so that the vehicle's own is the reference's.
   [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw) const;
 
-  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Where
-  /// it is late on the reference, that waits for it, little by little; from how late it is or how early in steady
-  /// flight, and not at its largest speed, at which no thrust makes good what it is late, the drag is learned.
+  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Learns
+  /// from it what the feed-forward lacks, but not at the largest speed, at which no thrust makes good what is late.
   void observe(double t, const Vec3& position, const Vec3& velocity, double dt);
-  /// For how long the reference has waited in all, s. A path that was made to follow on an earlier reference starts
-  /// later by what it has waited since.
-  [[nodiscard]] double waited() const { return waited_; }
-  /// The drag that setpoints make up for now, 1/s.
+  /// What has been learned: the drag that setpoints make up for, 1/s, and the damping.
   [[nodiscard]] double drag() const { return drag_; }
+  [[nodiscard]] double damping() const { return damping_; }
 
   [[nodiscard]] bool active() const { return !current_.empty(); }
   [[nodiscard]] bool braking() const { return is_braking_; }
@@ -65,11 +64,11 @@ class SetpointStream {
 
  private:
   [[nodiscard]] double deceleration(const Vec3& position, const Vec3& velocity) const;
-  void wait(double dt);
 
   Settings settings_;
+  VelocityError velocity_error_;
   double drag_;
-  double waited_ = 0.0;
+  double damping_;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::base::TimedPath current_;

@@ -2,12 +2,17 @@
 #include "bridge/setpoints/tracking_offset.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace jink::bridge::setpoints {
 namespace {
 
-constexpr double kJitter = 0.005;  // s
+constexpr double kSmoothing = 0.5;  // s
+constexpr double kGap = 0.3;        // s, from which on a difference of positions says nothing
+constexpr double kBelieved = 0.8;   // of the difference
+constexpr double kMostError = 1.0;  // m/s
+constexpr double kJitter = 0.005;   // s
 constexpr double kQuantile = 0.95;
 constexpr std::size_t kEnough = 10;  // errors, a second's worth
 
@@ -60,6 +65,22 @@ void TrackingOffset::judge() {
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(count - 1));
   std::nth_element(sorted.begin(), at, sorted.begin() + static_cast<std::ptrdiff_t>(count));
   error_ = *at;
+}
+
+void VelocityError::observe(double t, const Vec3& position, const Vec3& velocity) {
+  if (last_ && t <= last_->t) return;
+  const double dt = last_ ? t - last_->t : kGap;
+  if (dt < kGap) {
+    Vec3 difference = 0.5 * (velocity + last_->velocity) - (position - last_->position) / dt;
+    difference.z() = 0.0;
+    difference_ += -std::expm1(-dt / kSmoothing) * (difference - difference_);
+  }
+  last_ = {t, position, velocity, Vec3::Zero()};
+}
+
+Vec3 VelocityError::value() const {
+  const double size = difference_.norm();
+  return size > 0.0 ? Vec3(kBelieved * std::min(1.0, kMostError / size) * difference_) : Vec3::Zero();
 }
 
 void TrackingOffset::forget() {

@@ -12,6 +12,7 @@ namespace {
 constexpr double kSettling = 0.3;       // s, within which a request acts; PX4 takes up to 15 ms
 constexpr double kReadyAgain = 10.0;    // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;  // s
+constexpr double kLow = 0.3;            // m, below min_height: less is noise
 
 using Motion = Decision::Motion;
 
@@ -118,7 +119,9 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   if (state.mode == vehicle::FlightMode::kOffboard && state.armed) {
     waiting_for_.clear();
     flight_began_ = now;
-    phase_ = state.in_air ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
+    // One that was taken over while it sank climbs first, too.
+    const bool low = state.motion.value.position.z() < mission_.min_height - kLow;
+    phase_ = state.in_air && !low ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
     return decision;
   }
   if (phase.request.exhausted(now, state)) {

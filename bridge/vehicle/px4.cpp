@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/vehicle/px4.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -102,6 +104,11 @@ std::string failed_health(std::uint32_t present, std::uint32_t enabled, std::uin
   // PX4 sets this bit in `health` alone, not in `present` or `enabled`.
   if ((health & kPrearmCheck) == 0U) append(text, "pre-arm check");
   return text;
+}
+
+double position_sigma(double horizontal_accuracy, double vertical_accuracy) {
+  const auto stated = [](double value) { return std::isfinite(value) ? std::max(value, 0.0) : 0.0; };
+  return std::max(stated(horizontal_accuracy) / std::numbers::sqrt2, stated(vertical_accuracy));
 }
 
 bool estimator_has_local_position(std::uint32_t flags) {

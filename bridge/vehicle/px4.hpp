@@ -40,6 +40,10 @@ inline constexpr int kResultInProgress = 5;  ///< MAV_RESULT_IN_PROGRESS: the fi
 /// Whether ESTIMATOR_STATUS.flags hold a position (absolute or relative) and velocity, horizontal and vertical.
 [[nodiscard]] bool estimator_has_local_position(std::uint32_t flags);
 
+/// VehicleState.position_sigma, of what ESTIMATOR_STATUS states: PX4's horizontal accuracy is that of both axes
+/// together (the root of the sum of their variances). What is not finite or below zero is not stated.
+[[nodiscard]] double position_sigma(double horizontal_accuracy, double vertical_accuracy);
+
 /// What is missing in ESTIMATOR_STATUS.flags for a flight (position and velocity, horizontal and vertical, attitude),
 /// and what the estimator itself complains of (GPS glitch, accelerometer error), joined with ", "; empty: nothing.
 [[nodiscard]] std::string estimator_complaints(std::uint32_t flags);

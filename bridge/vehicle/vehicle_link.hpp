@@ -40,6 +40,9 @@ struct VehicleState {
   bool armed = false;
   FlightMode mode = FlightMode::kUnknown;
   base::Stamped<base::Kinematics, base::Frame::kLocal> motion;  ///< newest local position with velocity
+  /// m, standard deviation of `motion`'s position, the greater of what the autopilot states per horizontal axis and for
+  /// the height (ESTIMATOR_STATUS, VehicleLocalPosition); 0: it states none.
+  double position_sigma = 0.0;
   double yaw = 0.0;
   bool armable = false;            ///< the autopilot's own pre-arm checks pass
   bool local_position_ok = false;  ///< its estimator holds a local position

@@ -33,6 +33,7 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
   mission.geofence = scenario.world.value_or(planner::base::Box{});
   mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
   mission.time_limit = scenario.time_limit;
+  mission.tracks.sensed_from = scenario.sensing.sensed_from;
   mission.intents = !scenario.vehicles.empty();
   return mission;
 }

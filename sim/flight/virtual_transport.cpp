@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bridge/tracking/track_inbox.hpp"
+#include "bridge/vehicle/px4.hpp"
 
 namespace jink::sim::flight {
 namespace {
@@ -183,6 +184,8 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.armed = autopilot_.armed();
   state.mode = bridge_mode(autopilot_.mode());
   state.motion.value = {motion.position, motion.velocity};
+  state.position_sigma = bridge::vehicle::px4::position_sigma(autopilot_.estimator().horizontal_accuracy(),
+                                                              autopilot_.estimator().vertical_accuracy());
   state.yaw = motion.yaw;
   state.armable = autopilot_.prearm_ok();
   state.local_position_ok = autopilot_.position_valid();

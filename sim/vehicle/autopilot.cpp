@@ -68,6 +68,7 @@ Autopilot::Autopilot(const AutopilotOptions& options)
   ramp_started_ = -planner::base::kInfinity;
   active_setpoint_.position = hold_position_;
   model_.set_setpoint(active_setpoint_);
+  model_.set_wind(wind_.velocity());
   model_.set_motors(Motors::kFlying);
 }
 

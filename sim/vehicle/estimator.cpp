@@ -12,8 +12,6 @@ constexpr double kNoiseTime = 1.5;      // s, from the recordings: 1 cm/s from s
 constexpr double kWalk = 0.1;           // m/s per square root of a second without GPS: this model's choice
 constexpr double kRecoveryTime = 1.0;   // s, in which GPS takes the errors of dead reckoning away
 constexpr double kReckonedNone = 1e-4;  // m and m/s: gone
-constexpr double kAccuracy = 0.29;      // m, as PX4's SITL reports
-constexpr double kHeightAccuracy = 0.03;
 
 // Names of their own among the streams of a seed.
 constexpr std::uint64_t kPositionStream = 0x706f736e;
@@ -38,6 +36,7 @@ Estimator::Estimator(const EstimateErrors& errors, std::uint64_t seed, const Mot
       velocity_noise_(errors.velocity_noise, kNoiseTime, kStep, planner::base::RandomStream(seed, kVelocityStream)),
       drift_(errors.drift, errors.drift_time, kStep, planner::base::RandomStream(seed, kDriftStream)),
       walk_(seed, kWalkStream),
+      accuracy_(std::hypot(errors.position_noise, errors.drift)),
       exact_(!errors.ins && errors.position_noise == 0.0 && errors.velocity_noise == 0.0 && errors.drift == 0.0) {
   if (errors.ins) ins_.emplace(seed, truth, airborne);
   update(truth);
@@ -126,11 +125,11 @@ void Estimator::update(const Motion& truth) {
 
 double Estimator::horizontal_accuracy() const {
   if (ins_) return ins_->horizontal_accuracy();
-  return kAccuracy + kWalk * away_ * std::sqrt(away_);
+  return std::numbers::sqrt2 * accuracy_ + kWalk * away_ * std::sqrt(away_);
 }
 
 double Estimator::vertical_accuracy() const {
-  return ins_ ? ins_->vertical_accuracy() : kHeightAccuracy;
+  return ins_ ? ins_->vertical_accuracy() : accuracy_;
 }
 
 }  // namespace jink::sim::vehicle

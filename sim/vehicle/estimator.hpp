@@ -70,6 +70,7 @@ class Estimator {
   Vec3 jumped_ = Vec3::Zero();
   Vec3 reckoned_position_ = Vec3::Zero();  ///< errors of dead reckoning
   Vec3 reckoned_velocity_ = Vec3::Zero();
+  double accuracy_;    ///< m, standard deviation per axis, of what errs besides
   double away_ = 0.0;  ///< s without GPS
   std::uint8_t resets_ = 0;
   bool exact_;

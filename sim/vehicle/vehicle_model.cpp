@@ -73,13 +73,14 @@ void VehicleModel::set_motors(Motors motors) {
   motors_ = motors;
   if (motors == Motors::kFlying) {
     if (was_flying) return;
-    // In the air the rotors already carry the weight; on the ground they first have to speed up.
-    first_stage_ = thrust_ = on_ground_ ? Vec3(0, 0, -kGravity) : Vec3::Zero();
+    // In the air the rotors already carry the weight and hold against the wind; on the ground they first have to speed
+    // up.
+    first_stage_ = thrust_ = on_ground_ ? Vec3(0, 0, -kGravity) : Vec3(-cascade_.drag * wind_);
     std::fill(delayed_.begin(), delayed_.end(), setpoint_);
   } else {
     first_stage_ = thrust_ = Vec3(0, 0, -kGravity);
   }
-  integral_.setZero();
+  integral_ = motors == Motors::kFlying && !on_ground_ ? thrust_ : Vec3::Zero();
   command_ = thrust_;
 }
 

@@ -63,6 +63,7 @@ TEST(LoadMission, FillsInWhatIsOptional) {
   EXPECT_TRUE(m.tracks.required);
   EXPECT_EQ(m.tracks.timeout_s, 1.0);
   EXPECT_EQ(m.tracks.coast_s, 0.0);
+  EXPECT_EQ(m.tracks.sensed_from, SensedFrom::kWorld);
   EXPECT_EQ(m.time_limit, 300.0);
   EXPECT_EQ(m.dds_namespace, "");
   EXPECT_EQ(m.state, Transport::kMavlink);
@@ -75,7 +76,7 @@ TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
   std::string text = kValidMission;
   text += "state: dds\nsetpoints: dds\nintents: false\n";
   text.replace(text.find("domain: 7"), 9, "domain: 7, namespace: px4_1/team");
-  text.replace(text.find("coast_s: 0.5"), 12, "sources: [adsb]");
+  text.replace(text.find("coast_s: 0.5"), 12, "sensed_from: vehicle, sources: [adsb]");
   const Folder folder;
   const Mission m = load_mission(folder.write("m.yaml", text));
   EXPECT_EQ(m.dds_namespace, "px4_1/team");
@@ -84,6 +85,7 @@ TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
   EXPECT_FALSE(m.intents);
   EXPECT_FALSE(m.tracks.sources.jink || m.tracks.sources.autoware);
   EXPECT_TRUE(m.tracks.sources.adsb);
+  EXPECT_EQ(m.tracks.sensed_from, SensedFrom::kVehicle);
 }
 
 TEST(LoadMission, AcceptsTheUrlsOfMavsdk) {
@@ -142,6 +144,7 @@ TEST(LoadMission, RefusesBadValues) {
       {"domain: 7", "domain: 99999999999999999999", 10, "dds.domain", "99999999999999999999", "is not in [0, 232]"},
       {"domain: 7", "domain: 7, namespace: /px4", 10, "dds.namespace", "/px4", "is not a namespace"},
       {"domain: 7", "domain: 7, namespace: \"px 4\"", 10, "dds.namespace", "px 4", "is not a namespace"},
+      {"coast_s: 0.5", "sensed_from: mars", 11, "tracks.sensed_from", "mars", "is not one of world, vehicle"},
       {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 3]"},
       {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar", "is not one of jink, autoware, adsb"},
       {"time_limit: 120", "state: ros", 12, "state", "ros", "is not one of mavlink, dds"},

@@ -69,8 +69,21 @@ TEST(LoadVehicle, RefusesBadValuesWithPlaceAndRange) {
       {"mass: 1.5", "mass: 0", 3, "mass", "0", "(0, 10000]"},
       {"max_speed: 12", "max_speed: 4", 5, "cruise_speed", "5", "above max_speed; expected a number in (0, 4]"},
       {"max_climb: .75", "max_climb: -1", 8, "max_climb", "-1", "(0, 1000]"},
+      {"max_climb: .75", "max_climb: .75\ndrag: 3", 9, "drag", "3", "[0, 2]"},
+      {"max_climb: .75", "max_climb: .75\ndamping: -0.1", 9, "damping", "-0.1", "[0, 0.5]"},
   };
   for (const BadCase& bad : cases) expect_refused(kValidVehicle, bad, try_vehicle);
+}
+
+TEST(LoadVehicle, TakesWhatTheFeedForwardBeginsWith) {
+  const Folder folder;
+  const planner::base::VehicleLimits none = load_vehicle(folder.write("none.yaml", kValidVehicle));
+  EXPECT_EQ(none.drag, 0.0);
+  EXPECT_EQ(none.damping, 0.0);
+  const planner::base::VehicleLimits known =
+      load_vehicle(folder.write("known.yaml", std::string(kValidVehicle) + "drag: 0.7\ndamping: 0.15\n"));
+  EXPECT_EQ(known.drag, 0.7);
+  EXPECT_EQ(known.damping, 0.15);
 }
 
 TEST(LoadVehicle, RefusesKeysThatAreUnknownMissingOrRepeated) {

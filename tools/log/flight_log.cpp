@@ -182,7 +182,8 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, margin, track_acceleration,
                trust, stuck] = job.request;
-  const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb] = vehicle;
+  const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
+      vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
   line_.key("p").exact_vector(position).key("v").exact_vector(velocity).key("target").exact_vector(target);
   line_.key("vehicle").open('[');

@@ -83,5 +83,26 @@ TEST(TrackingOffset, AJumpOfTheReferenceIsNotAnErrorAndTimesThatDoNotGrowAreNone
   EXPECT_EQ(offset.forecast().offset, newest.offset);
 }
 
+// The position does what the vehicle does; the velocity is 0.4 m/s off.
+TEST(VelocityError, IsWhatThePositionDoesNotDo) {
+  VelocityError error;
+  const auto fly = [&](double from, double to, const Vec3& wrong) {
+    for (double t = from; t < to; t += 0.02)
+      error.observe(t, {std::sin(t), 2.0 * t, 1.0}, Vec3(std::cos(t), 2.0, 0.3) + wrong);
+  };
+  fly(0.0, 5.0, Vec3::Zero());
+  EXPECT_LT(error.value().norm(), 1e-3);
+  fly(5.0, 10.0, {0.4, -0.1, 0});
+  EXPECT_LT((error.value() - 0.8 * Vec3(0.4, -0.1, 0)).norm(), 1e-3);  // the height is left alone
+  // After a jump of the position, a gap, or what came before.
+  error.forget();
+  error.observe(10.0, {50, 0, 0}, {1, 0, 0});
+  error.observe(12.0, {0, 0, 0}, {1, 0, 0});
+  error.observe(11.0, {90, 0, 0}, {1, 0, 0});
+  EXPECT_LT((error.value() - 0.8 * Vec3(0.4, -0.1, 0)).norm(), 1e-3);
+  fly(20.0, 30.0, {5, 0, 0});
+  EXPECT_NEAR(error.value().norm(), 0.8, 1e-6);  // bounded
+}
+
 }  // namespace
 }  // namespace jink::bridge::setpoints

@@ -241,6 +241,7 @@ TEST(Supervisor, EngagesInTheAirWithoutTakeoffAndWithoutArming) {
   Flight flight;
   flight.state.in_air = flight.state.armed = true;
   flight.state.armable = false;  // what flies need not be
+  flight.state.motion.value.position.z() = 2.0;
   flight.engage();
   const Decision decision = flight.turn();
   EXPECT_EQ(decision.motion, Motion::kStay);
@@ -250,6 +251,22 @@ TEST(Supervisor, EngagesInTheAirWithoutTakeoffAndWithoutArming) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
   EXPECT_EQ(flight.turn().motion, Motion::kFollow);
   EXPECT_EQ(flight.requests, std::vector<vehicle::Command>{vehicle::Command::kOffboard});
+}
+
+// As after a companion that was killed: PX4's failsafe sinks.
+TEST(Supervisor, WhatIsTakenOverBelowTheLowestHeightClimbsFirst) {
+  Flight flight;
+  flight.state.in_air = flight.state.armed = true;
+  flight.state.motion.value.position.z() = 0.5;
+  flight.engage();
+  flight.turn();
+  flight.state.mode = vehicle::FlightMode::kOffboard;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kClimbing);
+  EXPECT_EQ(flight.turn().motion, Motion::kTakeoffPoint);
+  flight.flight.at_takeoff_height = true;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
 
 TEST(Supervisor, InterruptOnTheGroundBeforeAnyRequestEndsAtOnce) {
