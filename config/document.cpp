@@ -131,7 +131,7 @@ Value read_document(const std::filesystem::path& file) {
     if (census.documents() == 0 || census.empty()) throw ConfigError(source + ":1: is empty, expected a map");
     YAML::Node root = YAML::Load(text);
     const int line = line_of(root.Mark());
-    return {std::move(root), source, "", line};
+    return {root, source, "", line};
   } catch (const YAML::Exception& error) {
     fail(source, line_of(error.mark), "not valid YAML: " + error.msg);
   }
