@@ -150,7 +150,7 @@ double MotionControl::margin() const {
 }
 
 bool MotionControl::at_takeoff_height(const vehicle::VehicleState& state) const {
-  return !takeoff_point_ || takeoff_point_->z() - state.motion.value.position.z() < kTakeoffTolerance;
+  return takeoff_point_ && takeoff_point_->z() - state.motion.value.position.z() < kTakeoffTolerance;
 }
 
 }  // namespace jink::bridge::companion

@@ -15,11 +15,10 @@ constexpr double kAtRest = 0.02;            // m/s
 constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
 constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
-constexpr double kLearningRate = 1.0;       // 1/s
+constexpr double kLearningRate = 1.0;       // 1/s, of normalised least mean squares
 constexpr double kMostDrag = 2.0;           // 1/s
-constexpr double kMostDamping = 0.5;
-// Of PX4's cascade (MPC_XY_P, MPC_XY_VEL_P_ACC): what it makes of errors is what the feed-forward lacked. Other gains
-// make the learning faster or slower.
+// Of PX4's cascade (MPC_XY_P, MPC_XY_VEL_P_ACC): the acceleration that it makes of errors is what the feed-forward
+// lacked. Other gains make the learning faster or slower.
 constexpr double kVelocityGain = 1.8;                   // 1/s
 constexpr double kPositionGain = 0.95 * kVelocityGain;  // 1/s²
 constexpr double kSaturated = 0.95;                     // of the largest speed
@@ -110,7 +109,6 @@ void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocit
                        kVelocityGain * (point.velocity - velocity + velocity_error_.value());
   const double step = kLearningRate * dt / (1.0 + point.velocity.squaredNorm() + point.acceleration.squaredNorm());
   drag_ = std::clamp(drag_ + step * lacking.dot(point.velocity), 0.0, kMostDrag);
-  damping_ = std::clamp(damping_ + step * lacking.head<2>().dot(point.acceleration.head<2>()), 0.0, kMostDamping);
 }
 
 planner::base::TimedPoint SetpointStream::reference(double t) const {
@@ -121,7 +119,7 @@ planner::base::TimedPoint SetpointStream::reference(double t) const {
 vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
   const planner::base::TimedPoint point = reference(now + settings_.lead);
   const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead);
-  const double taken_off = 1.0 + damping_;
+  const double taken_off = 1.0 + settings_.damping;
   const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
   return {point.position, point.velocity + velocity_error_.value(), acceleration + drag_ * later.velocity, yaw};
 }

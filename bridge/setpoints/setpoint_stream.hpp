@@ -24,8 +24,7 @@ class SetpointStream {
     planner::base::Box volume{};     ///< in which a brake is to end
     double max_speed = planner::base::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
   };
-  explicit SetpointStream(const Settings& settings)
-      : settings_(settings), drag_(settings.drag), damping_(settings.damping) {}
+  explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
@@ -47,11 +46,10 @@ class SetpointStream {
   [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw) const;
 
   /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Learns
-  /// from it what the feed-forward lacks, but not at the largest speed, at which no thrust makes good what is late.
+  /// the drag from it, but not at the largest speed, at which no thrust makes good what is late.
   void observe(double t, const Vec3& position, const Vec3& velocity, double dt);
-  /// What has been learned: the drag that setpoints make up for, 1/s, and the damping.
+  /// The drag that setpoints make up for now, 1/s.
   [[nodiscard]] double drag() const { return drag_; }
-  [[nodiscard]] double damping() const { return damping_; }
 
   [[nodiscard]] bool active() const { return !current_.empty(); }
   [[nodiscard]] bool braking() const { return is_braking_; }
@@ -68,7 +66,6 @@ class SetpointStream {
   Settings settings_;
   VelocityError velocity_error_;
   double drag_;
-  double damping_;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::base::TimedPath current_;

@@ -12,7 +12,6 @@
 
 namespace jink::sim::mavlink {
 
-inline constexpr double kDegreesE7 = 1e7;
 inline constexpr double kLinkUp = 0.3;  ///< s after PX4's start, when it begins to send and to listen
 
 /// As most fields carry it.

@@ -10,7 +10,6 @@
 namespace jink::sim::mavlink {
 namespace {
 
-constexpr double kDegreesE7 = 1e7;
 constexpr double kLastItem = 65535.0;     ///< that a sequence number can name
 constexpr int kReachedRepeats = 10;       ///< PX4 says it again, in case it got lost
 constexpr double kReachedInterval = 1.0;  ///< s

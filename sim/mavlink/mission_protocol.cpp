@@ -14,7 +14,6 @@ constexpr double kRetry = 0.25;                                      ///< s
 constexpr double kGiveUp = 5.0;                                      ///< s
 constexpr std::array<std::uint16_t, 3> kMaxItems = {10000, 64, 32};  ///< by type
 
-constexpr double kDegreesE7 = 1e7;
 constexpr std::int32_t kMaxLatitudeE7 = 900000000;
 constexpr std::int32_t kMaxLongitudeE7 = 1800000000;
 constexpr float kMaxHeight = 10000.0F;  ///< m

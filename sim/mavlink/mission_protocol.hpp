@@ -15,6 +15,8 @@
 
 namespace jink::sim::mavlink {
 
+inline constexpr double kDegreesE7 = 1e7;  ///< of MAVLink's whole-numbered coordinates
+
 /// As uploaded. Its frame is GLOBAL_INT, GLOBAL_RELATIVE_ALT_INT or MISSION; its place and height are finite.
 using ListItem = mavlink_mission_item_int_t;
 

@@ -94,9 +94,9 @@ TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
 
 TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
   Loop loop;
-  loop.airborne({0, 11, 0.6}).fly();
+  loop.airborne({0, 11, 0.8}).fly();
   EXPECT_EQ(loop.planner.jobs.front().request.volume.max.y(), 11.0);
-  EXPECT_EQ(loop.planner.jobs.front().request.volume.min.z(), 0.6);
+  EXPECT_EQ(loop.planner.jobs.front().request.volume.min.z(), 0.8);
   loop.run(5.0);
   EXPECT_EQ(loop.planner.jobs.back().request.volume.max.y(), 10.0 - 0.3 * planner::base::HorizonSettings{}.margin);
   EXPECT_GT(loop.planner.jobs.back().request.volume.min.z(), 0.9);
@@ -207,7 +207,7 @@ TEST(Companion, AVehicleBesideItsReferenceIsPlannedFromWhereItIsAndTheReferenceD
   EXPECT_LT(
       (job.request.position - loop.link.telemetry.motion.value.position - (job.start - loop.now) * loop.last().velocity)
           .norm(),
-      0.1);
+      0.15);
   EXPECT_LT((job.offset.offset - beside - Vec3(0.08, 0, 0)).norm(), 0.1);
   // The plan not to give up begins there too, and is back on the old one's way at its end.
   ASSERT_FALSE(job.previous.empty());
@@ -261,6 +261,21 @@ TEST(Companion, EngagingInTheAirDoesNotCallTheVehicleBack) {
     loop.turn();
   }
   EXPECT_NEAR(loop.last().position.x(), 4.0 * (loop.now - Loop::kTurn), 1e-9);
+}
+
+// A companion was killed and the vehicle sank: no path leads along the ground.
+TEST(Companion, WhatIsTakenOverBelowTheLowestHeightClimbsBeforeItFliesOn) {
+  Loop loop;
+  loop.airborne({0, 0, 0.4});
+  loop.follows = false;
+  loop.run(1.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
+  EXPECT_EQ(loop.last().position, Vec3(0, 0, 1));
+  EXPECT_TRUE(loop.planner.jobs.empty());
+  loop.link.telemetry.motion.value.position.z() = 0.9;
+  loop.run(0.5);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
+  EXPECT_FALSE(loop.planner.jobs.empty());
 }
 
 TEST(Companion, TurnsTheHeadingToTheWaypointAtABoundedRate) {

@@ -39,11 +39,11 @@ TEST(Companion, BrakesOnTheWireWhenTheTracksGoStaleAndFliesOnWhenTheyCome) {
   loop.run(0.5);
   EXPECT_NEAR(speed - loop.last().velocity.norm(), 1.0, 0.1);  // 2 m/s²
   loop.run(1.0);
-  EXPECT_EQ(loop.last().velocity, Vec3::Zero());
+  EXPECT_LT(loop.last().velocity.norm(), 0.02);
   loop.tracks = true;
   loop.run(0.5);
   EXPECT_EQ(loop.recorder.count("hazard_over"), 1);
-  EXPECT_NEAR(loop.last().velocity.norm(), 2.0, 1e-3);
+  EXPECT_NEAR(loop.last().velocity.norm(), 2.0, 0.05);
   EXPECT_EQ(loop.recorder.count("hazard"), 1);
 }
 
@@ -55,7 +55,7 @@ TEST(Companion, BrakesWhenThePlannerIsLateOrHasNoPath) {
     (silent ? loop.planner.silent : loop.planner.valid) = silent;
     loop.run(2.5);
     EXPECT_EQ(loop.recorder.last("hazard"), "the planner is late");
-    EXPECT_EQ(loop.last().velocity, Vec3::Zero());
+    EXPECT_LT(loop.last().velocity.norm(), 0.02);
     loop.run(3.0);
     EXPECT_EQ(loop.companion.supervisor().outcome(), supervisor::Outcome::kAborted);
     EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kHold);

@@ -264,7 +264,7 @@ TEST(Supervisor, WhatIsTakenOverBelowTheLowestHeightClimbsFirst) {
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kClimbing);
   EXPECT_EQ(flight.turn().motion, Motion::kTakeoffPoint);
-  flight.flight.at_takeoff_height = true;
+  flight.context.at_takeoff_height = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }

@@ -203,6 +203,7 @@ TEST(Supervisor, TakesOverFromAFailsafeOfACompanionBeforeIt) {
   flight.state.mode = vehicle::FlightMode::kOffboard;
   flight.state.armed = false;
   flight.state.in_air = true;
+  flight.state.motion.value.position.z() = 2.0;
   flight.turn();  // engaging, with a heartbeat from before the failsafe
   flight.turn();
   flight.state.armed = true;
