@@ -151,6 +151,7 @@ void MavlinkEndpoint::Impl::watch_reboots() {
     link.ground_station = link.listing_parameters = false;
     link.components.clear();
   }
+  for (MissionProtocol& mission : missions_) mission.reset();
 }
 
 /// To the other links, unless it is for the autopilot alone: to those on which its target was heard, or anybody where
@@ -170,7 +171,6 @@ void MavlinkEndpoint::Impl::forward(const MavlinkLink& from, const mavlink_messa
   for (MavlinkLink& link : links_) {
     if (&link != &from && std::any_of(link.components.begin(), link.components.end(), meant)) link.pass(message);
   }
-  for (MissionProtocol& mission : missions_) mission.reset();
 }
 
 void MavlinkEndpoint::Impl::handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message) {
