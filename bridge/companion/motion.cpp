@@ -129,10 +129,11 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
 void MotionControl::observe(double now, double dt, const vehicle::VehicleState& state) {
   if (!stream_.active() || state.motion.age(now) > settings_.companion.stale_state) return;
   stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity, dt);
+  const Vec3 offset = state.motion.value.position - stream_.reference(state.motion.stamp).position;
   double& largest = reporter_.summary().largest_tracking_error;
-  largest = std::max(largest, error(state));
-  if (lost(state)) return offset_.forget();
-  offset_.observe(state.motion.stamp, state.motion.value.position - stream_.reference(state.motion.stamp).position);
+  largest = std::max(largest, offset.norm());
+  if (offset.norm() > kLostReference) return offset_.forget();
+  offset_.observe(state.motion.stamp, offset);
 }
 
 void MotionControl::shift(const Vec3& by) {

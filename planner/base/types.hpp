@@ -39,8 +39,8 @@ struct VehicleLimits {
   double max_acceleration = 6.0;  ///< Euclidean norm
   double max_jerk = 30.0;         ///< Euclidean norm
   double max_climb = 2.0;         ///< |vertical speed|, up and down
-  double drag = 0.0;     ///< 1/s, deceleration per speed; 0: not known. Where the feed-forward's learning begins
-  double damping = 0.0;  ///< of a commanded acceleration, that the autopilot takes off again; likewise
+  double drag = 0.0;              ///< 1/s, deceleration per speed; with which learning it in flight begins
+  double damping = 0.0;           ///< of a commanded acceleration, that the autopilot takes off again; not learned
 };
 
 /// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion.
