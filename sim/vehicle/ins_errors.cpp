@@ -15,10 +15,10 @@ struct Sigma {
 };
 
 // Per axis of the body (ahead, left, up) and sample of kStep, in flight and standing with motors off.
-const Vec3 kAccelNoise(0.5, 1.7, 1.4);     // m/s^2
-const Vec3 kGyroNoise(0.14, 0.07, 0.03);   // rad/s
-constexpr double kAccelNoiseAtRest = 0.1;  // m/s^2
-constexpr double kGyroNoiseAtRest = 0.01;  // rad/s
+const Vec3 kAccelNoise(0.6, 2.1, 1.4);         // m/s^2
+const Vec3 kGyroNoise(0.175, 0.0875, 0.0375);  // rad/s
+constexpr double kAccelNoiseAtRest = 0.1;      // m/s^2
+constexpr double kGyroNoiseAtRest = 0.01;      // rad/s
 
 // What the filter assumes of them per update of kFilterStep: EKF2_ACC_NOISE, EKF2_GYR_NOISE, EKF2_ACC_B_NOISE,
 // EKF2_GYR_B_NOISE, and its noise of the barometer's bias.
