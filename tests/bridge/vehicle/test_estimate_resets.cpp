@@ -189,7 +189,7 @@ TEST(StatusTexts, PutsChunksTogether) {
 }
 
 TEST(StatusTexts, PutsTogetherWhatWasCut) {
-  for (const std::size_t size : {0, 1, 49, 50, 51, 99, 100, 101, 250}) {
+  for (const std::size_t size : {0U, 1U, 49U, 50U, 51U, 99U, 100U, 101U, 250U}) {
     const std::string text(size, 'x');
     const Lines chunks = jink::bridge::vehicle::status_text_chunks(text);
     EXPECT_EQ(chunks.size(), size <= 50 ? 1 : size / 50 + 1) << size;
