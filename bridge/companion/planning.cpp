@@ -11,7 +11,6 @@ namespace {
 constexpr double kInset = 0.1;        // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;  // of the margin, likewise
 constexpr double kInsetSigmas = 2.0;  // of the estimate's position, likewise
-constexpr double kOnPlan = 0.5;       // of the margin, within which of it the vehicle is on its plan
 constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
 
 // The path as it will be flown from where the vehicle is beside it: back to it smoothly.
@@ -20,15 +19,6 @@ planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& fro
   return setpoints::OffsetForecast{path.front().t, from - path.front().position,
                                    std::min(setpoints::OffsetForecast::kFade, left)}
       .added_to(std::move(path));
-}
-
-// What the vehicle is expected to be beside its reference: as the plan that it is on has it, so that the next plan may
-// be that one to the bit, else as it was seen last.
-setpoints::OffsetForecast offset(double start, const MotionControl& motion) {
-  const setpoints::OffsetForecast& planned = motion.stream().offset();
-  const setpoints::OffsetForecast& newest = motion.offset().forecast();
-  const double off = (newest.at(start).position - planned.at(start).position).norm();
-  return off < kOnPlan * motion.margin() ? planned : newest;
 }
 
 // What is placed in the world's frame is off, for the vehicle, by what the vehicle's own place is.
@@ -88,7 +78,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   const bool lost = motion.lost(state);
   reporter_.reference_lost(now, lost, motion.error(state));
   // The plan begins where the vehicle will be, which is beside its reference.
-  if (!lost) job.offset = offset(job.start, motion);
+  if (!lost) job.offset = motion.offset().forecast();
   const planner::base::TimedPoint reference = stream.reference(job.start);
   const planner::base::TimedPoint offset = job.offset.at(job.start);
   planner::horizon::PathRequest& request = job.request;

@@ -28,7 +28,6 @@ constexpr double kSaturated = 0.95;                     // of the largest speed
 void SetpointStream::hold(const Vec3& position, double now) {
   current_ = {{now, position, Vec3::Zero(), Vec3::Zero()}};
   next_.clear();
-  offset_ = {};
   is_plan_ = false;
   is_braking_ = false;
 }
@@ -49,7 +48,6 @@ void SetpointStream::follow(planner::base::TimedPath path, const OffsetForecast&
     current_.insert(current_.end(), next_.begin(), next_.end());
   }
   planned_ = std::move(path);
-  offset_ = offset;
   next_ = offset.taken_off(planned_);
   if (current_.empty()) current_ = next_;
   is_plan_ = true;
@@ -76,7 +74,6 @@ void SetpointStream::brake(double now, const std::optional<planner::base::TimedP
   stop.push_back({t, position, Vec3::Zero(), Vec3::Zero()});
   current_ = std::move(stop);
   next_.clear();
-  offset_ = {};
   is_plan_ = false;
   is_braking_ = true;
 }

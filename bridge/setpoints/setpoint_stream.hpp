@@ -56,8 +56,6 @@ class SetpointStream {
   /// The path that follow() was given last, from time t on, for the planner's warm start; empty while holding or
   /// braking.
   [[nodiscard]] planner::base::TimedPath plan(double t) const;
-  /// The offset that follow() was given last; none while holding or braking.
-  [[nodiscard]] const OffsetForecast& offset() const { return offset_; }
   /// All that is followed from time t on, the path that waits for its start, a stop and a stay included: reference() as
   /// a path. Precondition: active().
   [[nodiscard]] planner::base::TimedPath ahead(double t) const;
@@ -73,7 +71,6 @@ class SetpointStream {
   planner::base::TimedPath current_;
   planner::base::TimedPath next_;     // takes over at its first time
   planner::base::TimedPath planned_;  // the path that the vehicle is to fly along next_
-  OffsetForecast offset_;             // of the one from the other
 };
 
 }  // namespace jink::bridge::setpoints

@@ -218,21 +218,6 @@ TEST(Companion, AVehicleBesideItsReferenceIsPlannedFromWhereItIsAndTheReferenceD
     EXPECT_LT((loop.link.sent[i + 1].position - loop.link.sent[i].position).norm(), 0.06) << i;
 }
 
-// Else a plan through a gap that leaves just the margin would be given up for each centimetre.
-TEST(Companion, AVehicleThatIsOnItsPlanIsPlannedFromTheVeryPlan) {
-  Loop loop;
-  loop.airborne().fly();
-  loop.beside = {0, 0.15, 0};
-  loop.run(1.0);
-  const PlanJob& on = loop.planner.jobs.back();
-  EXPECT_NEAR(on.request.position.y(), loop.last().position.y(), 1e-6);
-  ASSERT_FALSE(on.previous.empty());
-  EXPECT_EQ(on.previous.front().position, on.request.position);
-  loop.beside = {0, 0.25, 0};
-  loop.run(1.0);
-  EXPECT_NEAR(loop.planner.jobs.back().request.position.y(), loop.last().position.y() + 0.25, 0.05);
-}
-
 TEST(Companion, CountsALatePlanAsAMiss) {
   Loop loop;
   loop.airborne().fly();
