@@ -15,4 +15,11 @@ inline std::string metres(double value, int decimals = 2) {
   return text.data();
 }
 
+/// "1.5 s".
+inline std::string seconds(double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.1f s", value);
+  return text.data();
+}
+
 }  // namespace jink::bridge::base

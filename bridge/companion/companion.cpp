@@ -2,8 +2,6 @@
 #include "bridge/companion/companion.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
 
 #include "bridge/base/text.hpp"
@@ -56,7 +54,7 @@ bool Companion::step(double now) {
   const vehicle::VehicleState& state = intake_.state();
   if (const supervisor::Phase phase = supervisor_.phase();
       phase == supervisor::Phase::kFlying || phase == supervisor::Phase::kStopping) {
-    reporter_.flown(now, state);
+    if (!supervisor_.arrived()) reporter_.flown(now, state);
     motion_.observe(now, dt, state);
   }
   const supervisor::Decision decision = supervisor_.update(now, state, context(now));
@@ -81,10 +79,9 @@ void Companion::notice_stall(double now) {
   const double stall = now - last_step_.value_or(now);
   const supervisor::Phase phase = supervisor_.phase();
   if (stall <= kStall || (phase != supervisor::Phase::kClimbing && phase != supervisor::Phase::kFlying)) return;
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "this program did not run for %.1f s", stall);
-  reporter_.stall(now, stall, text.data());
-  if (stall > kLongStall) supervisor_.stop(now, supervisor::Outcome::kAborted, text.data());
+  const std::string text = "this program did not run for " + base::seconds(stall);
+  reporter_.stall(now, stall, text);
+  if (stall > kLongStall) supervisor_.stop(now, supervisor::Outcome::kAborted, text);
 }
 
 // An estimate that jumps takes along what is to be followed: the vehicle did not move.
@@ -130,6 +127,7 @@ supervisor::FlightContext Companion::context(double now) {
     reporter_.event(now, "waypoint",
                     std::to_string(route_.passed()) + " of " + std::to_string(route_.size()) + " passed");
   context.at_target = route_.arrived(state.motion.value.position, state.motion.value.velocity);
+  context.leaves_target = !planning_.stays_at_target();
   context.at_rest = state.motion.value.velocity.norm() < Route::kArrivalSpeed;
   while (auto report = link_.next_report()) {
     reporter_.event(
@@ -148,7 +146,7 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
   const bool flying = supervisor_.phase() == supervisor::Phase::kFlying;
   // While a hazard lasts the planner goes on: when it has passed there is a plan to follow.
   if (flying && (decision.motion == Motion::kFollow || decision.motion == Motion::kBrake)) {
-    planning_.start(now, intake_, motion_, route_);
+    planning_.start(now, intake_, motion_, route_, !supervisor_.arrived());
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;

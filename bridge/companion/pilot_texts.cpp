@@ -17,7 +17,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kPhases{
     {{"engaging", "taking over"}, {"handover", "handing over to HOLD"}}};
 
 /// Events besides phases and hazards that a pilot should know of.
-constexpr std::array<std::pair<std::string_view, Severity>, 8> kEvents{{{"hazard_over", Severity::kInfo},
+constexpr std::array<std::pair<std::string_view, Severity>, 9> kEvents{{{"hazard_over", Severity::kInfo},
+                                                                        {"arrived", Severity::kInfo},
                                                                         {"waiting", Severity::kInfo},
                                                                         {"waypoint", Severity::kInfo},
                                                                         {"stuck", Severity::kWarning},

@@ -8,7 +8,7 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kInset = 0.1;        // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInset = 0.2;        // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;  // of the margin, likewise
 constexpr double kInsetSigmas = 2.0;  // of the estimate's position, likewise
 constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
@@ -19,6 +19,15 @@ planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& fro
   return setpoints::OffsetForecast{path.front().t, from - path.front().position,
                                    std::min(setpoints::OffsetForecast::kFade, left)}
       .added_to(std::move(path));
+}
+
+// Free, verified, and never farther away than where it begins.
+bool stays_at(const Vec3& place, const planner::verify::Plan& plan) {
+  if (plan.status != planner::verify::PlanStatus::kReaches) return false;
+  const double begins = (plan.path.front().position - place).norm();
+  return std::all_of(plan.path.begin(), plan.path.end(), [&](const planner::base::TimedPoint& point) {
+    return (point.position - place).norm() <= std::max(Route::kArrival, begins);
+  });
 }
 
 // What is placed in the world's frame is off, for the vehicle, by what the vehicle's own place is.
@@ -42,19 +51,20 @@ std::optional<PlanResult> Planning::take(double now) {
   }
   if (!result) return result;
   ++plans_;
+  stays_at_target_ = stays_at(mission_.waypoints.back(), result->plan);
   reporter_.plan(now, *result);
   if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
   return result;
 }
 
-void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route) {
+void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {
   const config::CompanionSettings& companion = settings_.companion;
   if (failed_ || planner_.busy()) return;
   const double period = 1.0 / (new_tracks_ ? companion.largest_replan_rate_hz : companion.replan_rate_hz);
   if (last_begun_ && now - *last_begun_ + 1e-6 < period) return;
   last_begun_ = now;
   new_tracks_ = false;
-  PlanJob next = job(now, intake, motion, route);
+  PlanJob next = job(now, intake, motion, route, visit);
   try {
     planner_.start(std::move(next));
   } catch (const std::exception& failure) {
@@ -62,7 +72,7 @@ void Planning::start(double now, Intake& intake, const MotionControl& motion, Ro
   }
 }
 
-PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, Route& route) {
+PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {
   const vehicle::VehicleState& state = intake.state();
   const setpoints::SetpointStream& stream = motion.stream();
   PlanJob job;
@@ -90,7 +100,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
-  request.stuck = route.stuck(now, state.motion.value.position);
+  request.visit = visit;
+  request.stuck = visit && route.stuck(now, state.motion.value.position);
   reporter_.stuck(now, request.stuck);
   request.margin = motion.margin();
   double& largest_margin = reporter_.summary().largest_margin;

@@ -27,18 +27,21 @@ class Planning {
 
   /// The plan that has been finished, if any.
   std::optional<PlanResult> take(double now);
-  /// Starts a plan where the planner is free and one is due: at once where a track message came, else at a rate.
-  void start(double now, Intake& intake, const MotionControl& motion, Route& route);
+  /// Starts a plan where the planner is free and one is due: at once where a track message came, else at a rate. With
+  /// `visit` it is enough that the plan has been at the target.
+  void start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit);
   void tracks_came() { new_tracks_ = true; }
 
   /// When the newest plan with a path was begun. One made under a hazard counts: the planner is alive.
   [[nodiscard]] std::optional<double> newest_plan() const { return newest_plan_; }
   [[nodiscard]] std::uint64_t plans() const { return plans_; }
+  /// By the newest plan the last waypoint stays free, and the vehicle there.
+  [[nodiscard]] bool stays_at_target() const { return stays_at_target_; }
   /// What the planner threw, in words, once.
   std::optional<std::string> take_failure() { return std::exchange(failure_, std::nullopt); }
 
  private:
-  [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, Route& route);
+  [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit);
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
   void failed(double now, const std::exception& failure);
 
@@ -50,6 +53,7 @@ class Planning {
   bool new_tracks_ = false;  // since then
   std::optional<double> newest_plan_;
   std::uint64_t plans_ = 0;
+  bool stays_at_target_ = false;
   bool failed_ = false;
   std::optional<std::string> failure_;
 };

@@ -47,7 +47,7 @@ struct FlightSummary {
   supervisor::Outcome outcome = supervisor::Outcome::kNone;
   std::string reason;
   supervisor::MissingPeer missing_peer = supervisor::MissingPeer::kNone;
-  double flight_time = 0.0;  ///< from the take-off height (or engagement in the air) to the end of the flight
+  double flight_time = 0.0;  ///< from the take-off height (or engagement in the air) to the target, else to the end
   double path_length = 0.0;  ///< flown in that time, by the autopilot's estimate
   double straight_length = 0.0;
   double max_speed = 0.0;
@@ -104,7 +104,7 @@ class FlightReporter {
     supervisor::Phase phase = supervisor::Phase::kDone;
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
-    bool reference_lost = false, cautious = false, stuck = false, sending = true, margin = false;
+    bool reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true, margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;

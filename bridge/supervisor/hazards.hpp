@@ -28,6 +28,7 @@ struct FlightContext {
   double unsent_for = 0.0;  ///< s, for which setpoints could not be handed to the transport
   bool at_takeoff_height = false;
   bool at_target = false;                        ///< within the arrival tolerance of the last waypoint, slow
+  bool leaves_target = false;                    ///< no plan stays there: it does not stay free
   bool at_rest = false;                          ///< the brake has done its work
   std::optional<vehicle::CommandReport> report;  ///< newest answer of the autopilot
 };

@@ -28,6 +28,13 @@ MissingPeer Supervisor::missing_peer() const {
   return over != nullptr ? over->missing_peer : MissingPeer::kNone;
 }
 
+bool Supervisor::arrived() const {
+  const Flying* flying = std::get_if<Flying>(&phase_);
+  if (flying != nullptr) return flying->arrived.has_value();
+  const Ending* ending = ending_of(phase_);
+  return ending != nullptr && ending->outcome == Outcome::kReached;
+}
+
 void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   const Phase before = phase();
   if (before == Phase::kDone || before == Phase::kStopping || before == Phase::kHandover) return;
@@ -193,9 +200,13 @@ Decision Supervisor::step(Climbing& phase, const Input& in) {
 
 Decision Supervisor::step(Flying& phase, const Input& in) {
   // Where the vehicle was is no proof of where it is.
-  if (in.flight.at_target && in.state.motion.age(in.now) <= settings_.stale_state && !mode_changes_.failsafe()) {
+  const bool at_target =
+      in.flight.at_target && in.state.motion.age(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
+  if (at_target && !phase.arrived) phase.arrived = in.now;
+  if (at_target && !in.flight.leaves_target) {
     hazard_.clear();
-    Ending ending{Outcome::kReached, "target reached", {}};
+    const double held = in.now - *phase.arrived;
+    Ending ending{Outcome::kReached, "target reached" + (held > 0.0 ? ", free after " + base::seconds(held) : ""), {}};
     if (mission_.arrival == config::Arrival::kLand) {
       phase_ = Landing{in.now, std::move(ending)};
     } else {
@@ -204,7 +215,11 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
     return {Motion::kFollow, {}};
   }
   if (in.now - *flight_began_ > mission_.time_limit) {
-    stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
+    if (phase.arrived) {
+      stop(in.now, Outcome::kReached, "target reached, but it did not stay free within the time limit");
+    } else {
+      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
+    }
     return {Motion::kBrake, {}};
   }
   return {brakes_for_hazard(in, phase.since) ? Motion::kBrake : Motion::kFollow, {}};

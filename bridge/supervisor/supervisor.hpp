@@ -48,6 +48,9 @@ class Supervisor {
   [[nodiscard]] const std::string& waiting_for() const { return waiting_for_; }
   /// Why the vehicle brakes though nobody ended the flight; empty: it does not.
   [[nodiscard]] const std::string& hazard() const { return hazard_.text(); }
+  /// It has been at the target. Flying still, it holds near there, out of the way of what comes, until the target stays
+  /// free or the time is over.
+  [[nodiscard]] bool arrived() const;
   /// When OFFBOARD flight began; none: not yet.
   [[nodiscard]] std::optional<double> flight_began() const { return flight_began_; }
 

@@ -208,6 +208,9 @@ struct CostLanes {
   Lanes<kLanes> length,                                 ///< flown, m
       deviation,                                        ///< distance from unobstructed flight, summed over the steps, m
       arrival,                                          ///< end of the last step that did not end near the target, s
+      stay,                                             ///< steps for which it has been at the target
+      visited,                                          ///< 1 once it has stayed there, where that is enough, else 0
+      counts,                                           ///< 0 where it had by the end of the last stretch, else 1
       steering,                                         ///< sum of the angles between legs, Eq. (3), rad
       dip,                                              ///< into the soft distances, as f3 counts it
       violation;                                        ///< of the hard distances and the volume
@@ -221,6 +224,7 @@ struct CostLanes {
     most.copy(start);
     corner.copy(start);
     direction.set(scene.velocity);
+    for (std::size_t i = 0; i < kLanes; ++i) counts[i] = 1.0;
   }
 
   /// Step n, in which the vehicles fly evenly from where they were to `to`.
@@ -242,7 +246,7 @@ struct CostLanes {
       const double uy = y - base.y();
       const double uz = z - base.z();
       deviation[i] += std::sqrt(ux * ux + uy * uy + uz * uz);
-      length[i] += step;
+      length[i] += counts[i] * step;
       way[i] = step;
       least.x[i] = x < least.x[i] ? x : least.x[i];
       least.y[i] = y < least.y[i] ? y : least.y[i];
@@ -265,9 +269,13 @@ struct CostLanes {
       for (std::size_t j = 1; j <= count; ++j) add_outside(places[j]);
     }
     if (bounds.squared_distance(scene.target) > kNear * kNear) {
-      for (std::size_t i = 0; i < kLanes; ++i) arrival[i] = (n + 1) * scene.step;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        arrival[i] = visited[i] > 0.0 ? arrival[i] : (n + 1) * scene.step;
+        stay[i] = 0.0;
+      }
     } else {
-      for (std::size_t j = 1; j <= count; ++j) add_time((before + static_cast<int>(j) + 1) * scene.step, places[j]);
+      for (std::size_t j = 0; j < count; ++j) add_time(j, (before + static_cast<int>(j) + 2) * scene.step);
+      for (std::size_t i = 0; i < kLanes; ++i) counts[i] = 1.0 - visited[i];
     }
     for (std::size_t j = 0; j < count; ++j) {
       const int step = before + static_cast<int>(j) + 1;
@@ -287,14 +295,22 @@ struct CostLanes {
     count = 0;
   }
 
-  /// Time `end`, s, counts for the paths that are then, at `to`, not yet near the target.
-  [[gnu::always_inline]] void add_time(double end, const PointLanes<kLanes>& to) {
+  /// The stretch's step j, until time `end`, s: it counts for the paths that are then not yet near the target, and its
+  /// length does not for those that have visited it.
+  [[gnu::always_inline]] void add_time(std::size_t j, double end) {
+    const PointLanes<kLanes>& to = places[j + 1];
     const Vec3 target = scene.target;
+    const double steps_to_stay = scene.visit ? kVisitSteps : base::kInfinity;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double x = to.x[i] - target.x();
       const double y = to.y[i] - target.y();
       const double z = to.z[i] - target.z();
-      arrival[i] = x * x + y * y + z * z > kNear * kNear ? end : arrival[i];
+      const double squared = x * x + y * y + z * z;
+      length[i] -= counts[i] * visited[i] * moved[j][i];
+      arrival[i] = squared > kNear * kNear && visited[i] == 0.0 ? end : arrival[i];
+      const bool at_target = squared <= kVisit * kVisit && moved[j][i] <= kVisitSpeed * scene.step;
+      stay[i] = at_target ? stay[i] + 1.0 : 0.0;
+      visited[i] = stay[i] >= steps_to_stay ? 1.0 : visited[i];
     }
   }
 
@@ -433,7 +449,7 @@ struct CostLanes {
       const double then = arrival[i] == horizon ? rest[i] / scene.cruise : 0.0;
       const double late = arrival[i] + then - scene.unobstructed_time;
       const double lost = late > 0.0 ? late : 0.0;
-      total[i] = length[i] + rest[i] + scene.time_weight * scene.cruise * lost +
+      total[i] = length[i] + counts[i] * rest[i] + scene.time_weight * scene.cruise * lost +
                  scene.deviation_weight * deviation[i] / scene.steps;
     }
     for (std::size_t i = 0; i < kLanes; ++i) {

@@ -55,6 +55,7 @@ void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>&
   scene_.position = request.position;
   scene_.velocity = request.velocity;
   scene_.target = request.target;
+  scene_.visit = request.visit;
   scene_.via = via;
   scene_.time_weight = (via ? kHurry : 1.0) * settings_.time_weight;
   scene_.volume = request.volume;

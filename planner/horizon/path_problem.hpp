@@ -29,6 +29,7 @@ struct PathRequest {
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
+  bool visit = false;                            ///< to have been at the target is enough: it need not stay free
 };
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
@@ -39,9 +40,10 @@ struct PathRequest {
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
 /// unobstructed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths
-/// the one at cruise speed wins. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long
-/// and how soon the path dips into the clearance that the tracks' uncertainty asks for. Violation: the same for the
-/// hard margin, and for leaving the volume.
+/// the one at cruise speed wins; with PathRequest::visit length and time count until the target has been visited.
+/// f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and how soon the path dips
+/// into the clearance that the tracks' uncertainty asks for. Violation: the same for the hard margin, and for leaving
+/// the volume.
 class PathProblem final : public optimizer::Problem {
  public:
   /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.

@@ -12,10 +12,13 @@
 
 namespace jink::planner::horizon {
 
-inline constexpr double kCatchUp = 0.4;   ///< s, in which a distance from the wished position is made good
-inline constexpr double kArrival = 0.05;  ///< m, where a path is at the target
-inline constexpr double kNear = 0.3;      ///< m, where time stops counting
-inline constexpr double kShortLeg = 0.1;  ///< m, legs below have no direction
+inline constexpr double kCatchUp = 0.4;     ///< s, in which a distance from the wished position is made good
+inline constexpr double kArrival = 0.05;    ///< m, where a path is at the target
+inline constexpr double kNear = 0.3;        ///< m, where time stops counting
+inline constexpr double kVisit = 0.2;       ///< m, where a path that is
+inline constexpr double kVisitSpeed = 0.5;  ///< m/s, as slow as this
+inline constexpr int kVisitSteps = 3;       ///< for so many steps has visited the target
+inline constexpr double kShortLeg = 0.1;    ///< m, legs below have no direction
 
 /// How the vehicle follows a wished velocity: speed, climb and acceleration bounded, the acceleration constant in each
 /// step.
@@ -65,6 +68,7 @@ struct PathScene {
   Vec3 position = Vec3::Zero();    ///< of the vehicle at time 0
   Vec3 velocity = Vec3::Zero();    ///< of the vehicle at time 0
   Vec3 target = Vec3::Zero();      ///< where the path ends
+  bool visit = false;              ///< to have been at the target is enough
   std::optional<Vec3> via;         ///< over which the way on leads from where the horizon ends short of it
   base::Box volume;                ///< that the path must not leave
   geometry::PathFrame frame;       ///< from the vehicle to the target

@@ -152,7 +152,7 @@ class Flight {
       member.link.send_telemetry();
       if (interrupted) member.companion.interrupt(t);
       member.over = !member.companion.step(t);
-      if (member.over) judge_.close(k);
+      if (member.over || member.companion.supervisor().arrived()) judge_.close(k);
       going = going || !member.over;
     }
     return going;

@@ -76,15 +76,14 @@ bool ClosedLoopJudge::watch(double t, std::span<const world::VehicleTruth> now) 
     for (std::size_t j = 0; j < k; ++j) watch_pair(j, k, t, now);
   }
   for (std::size_t k = 0; k < now.size(); ++k) {
-    bridge::companion::FlightSummary& flight = reports_[k].flight;
+    const Vec3 from = std::exchange(last_[k], now[k].position);
+    if (closed_[k]) continue;
     if (!world_.inside(now[k].position))
       fail(k, bridge::supervisor::Outcome::kLeftWorld, "left the world" + at_time(t));
-    if (!closed_[k]) {
-      flight.max_speed = std::max(flight.max_speed, now[k].velocity.norm());
-      flight.path_length += (now[k].position - last_[k]).norm();
-      flight.flight_time = t;
-    }
-    last_[k] = now[k].position;
+    bridge::companion::FlightSummary& flight = reports_[k].flight;
+    flight.max_speed = std::max(flight.max_speed, now[k].velocity.norm());
+    flight.path_length += (now[k].position - from).norm();
+    flight.flight_time = t;
   }
   last_t_ = t;
   return ended();

@@ -27,7 +27,7 @@ class ClosedLoopJudge {
 
   /// The motion up to `t`, by number. True: a vehicle has hit something or left the world, which ends the flight.
   bool watch(double t, std::span<const world::VehicleTruth> now);
-  /// That vehicle is done: what it flies from now on does not count, but what it hits does.
+  /// That vehicle has been at its target, or is done: what it flies from now on does not count, but what it hits does.
   void close(std::size_t vehicle) { closed_[vehicle] = true; }
 
   /// Whether watch() has ended the flight, and the time that it was last told.

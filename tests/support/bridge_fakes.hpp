@@ -78,7 +78,7 @@ class FakePlanner final : public companion::PlannerTask {
     result.ms = 1e3 * takes;
     result.missed = now > result.job.start + 1e-9;
     if (valid) {
-      result.plan.status = planner::verify::PlanStatus::kReaches;
+      result.plan.status = status;
       result.plan.path = straight(result.job.request);
     }
     return result;
@@ -96,6 +96,7 @@ class FakePlanner final : public companion::PlannerTask {
   }
 
   std::vector<companion::PlanJob> jobs;
+  planner::verify::PlanStatus status = planner::verify::PlanStatus::kReaches;
   double promised = 0.04, takes = 0.04;
   double speed = 2.0;
   bool silent = false, valid = true, throws = false, throws_at_start = false;

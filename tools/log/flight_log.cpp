@@ -181,7 +181,7 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, margin, track_acceleration,
-               trust, stuck] = job.request;
+               trust, stuck, visit] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -191,7 +191,14 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
     line_.exact(limit);
   line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
   line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
-  line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("tracks").open('[');
+  line_.key("acceleration_trust")
+      .exact(trust)
+      .key("stuck")
+      .flag(stuck)
+      .key("visit")
+      .flag(visit)
+      .key("tracks")
+      .open('[');
   for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age] : job.tracks) {
     line_.open('[').integer(id);
     for (const Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());

@@ -149,6 +149,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   request.acceleration_trust = exact(member(from, "acceleration_trust"), "acceleration_trust");
   // Older logs have no such key.
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
+  if (from.contains("visit")) request.visit = flag_of(from, "visit");
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
   if (!(request.margin >= 0.0) || !(request.track_acceleration >= 0.0) || !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");

@@ -353,6 +353,28 @@ TEST(Companion, DoesNotFleeFromItsOwnTrack) {
   EXPECT_EQ(loop.recorder.last("tracks_self"), "1 tracks are taken for this vehicle itself");
 }
 
+TEST(Companion, HoldsClearOfATargetUntilItStaysFree) {
+  config::Mission m = Loop::mission();
+  m.waypoints = {{1, 0, 2}};
+  Loop loop(m);
+  loop.planner.speed = 0.4;
+  loop.planner.status = planner::verify::PlanStatus::kProgresses;
+  loop.airborne().fly();
+  EXPECT_TRUE(loop.planner.jobs.back().request.visit);
+  loop.run(8.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
+  EXPECT_EQ(loop.recorder.count("arrived"), 1);
+  EXPECT_FALSE(loop.planner.jobs.back().request.visit);
+  EXPECT_FALSE(loop.planner.jobs.back().request.stuck);  // it is where it is to be
+  EXPECT_LT(loop.companion.summary().flight_time, 3.0);  // to the target
+  loop.planner.status = planner::verify::PlanStatus::kReaches;
+  loop.run(0.5);
+  EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kHold);
+  EXPECT_EQ(loop.companion.summary().outcome, supervisor::Outcome::kReached);
+  EXPECT_TRUE(loop.companion.summary().reason.starts_with("target reached, free after 6."))
+      << loop.companion.summary().reason;
+}
+
 TEST(Companion, LandsWhereTheMissionSaysSo) {
   config::Mission m = Loop::mission();
   m.arrival = config::Arrival::kLand;

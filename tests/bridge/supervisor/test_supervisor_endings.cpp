@@ -61,6 +61,41 @@ TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
   EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
 }
 
+// What comes there would hit a vehicle in HOLD: it goes on following plans, which hold clear.
+TEST(Supervisor, ATargetThatDoesNotStayFreeIsNotHeldIn) {
+  Flight flight;
+  flight.fly().context.at_target = true;
+  flight.context.leaves_target = true;
+  EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
+  EXPECT_TRUE(flight.supervisor.arrived());
+  flight.context.at_target = false;
+  flight.run(5.0);
+  flight.context.leaves_target = false;  // as seen from beside it
+  flight.run(1.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
+  EXPECT_TRUE(flight.supervisor.arrived());
+  flight.context.at_target = true;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
+  EXPECT_TRUE(flight.supervisor.reason().starts_with("target reached, free after 7.")) << flight.supervisor.reason();
+}
+
+TEST(Supervisor, ATargetThatNeverStaysFreeIsReachedAllTheSame) {
+  Flight flight;
+  flight.fly().context.at_target = true;
+  flight.context.leaves_target = true;
+  flight.turn();
+  flight.context.at_target = false;
+  flight.run(100.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kStopping);
+  flight.context.at_rest = true;
+  flight.run(1.0);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
+  EXPECT_NE(flight.supervisor.reason().find("did not stay free"), std::string::npos);
+}
+
 TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
   Flight flight;
   flight.fly().positions = false;

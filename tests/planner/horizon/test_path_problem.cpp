@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -143,6 +144,31 @@ TEST(PathProblem, ZeroVariablesAreTheCheapestWithoutObstacles) {
   EXPECT_EQ(straight.violation, 0.0);
   base::RandomStream random(1);
   for (int i = 0; i < 200; ++i) EXPECT_GT(evaluate(problem, random_variables(random, problem)).f[0], straight.f[0]);
+}
+
+// There after 3 s, for a second, and away again; or through the target without a stop.
+TEST(PathProblem, AfterAVisitNeitherLengthNorTimeCounts) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request({4, 0, 2});
+  base::TimedPath path;
+  for (int step = 0; step <= 60; ++step) {
+    const double t = 0.1 * step;
+    const double x = t < 3.0 ? 4.0 / 3.0 * t : t < 4.0 ? 4.0 : 4.0 - 1.5 * (t - 4.0);
+    path.push_back({t, {x, 0, 2}, Vec3::Zero(), Vec3::Zero()});
+  }
+  base::TimedPath through = path;
+  for (base::TimedPoint& point : through) point.position.x() = 1.2 * point.t;
+  const auto lengths = [&](bool visit) {
+    r.visit = visit;
+    problem.prepare(r);
+    return std::array{problem.cost_of(path).f[0], problem.cost_of(through).f[0]};
+  };
+  const auto [whole, whole_through] = lengths(false);
+  const auto [there, visit_through] = lengths(true);
+  EXPECT_GT(whole, 4.0 + 3.0 + 1.0);
+  EXPECT_GT(there, 4.0);
+  EXPECT_LT(there, 4.0 + 3.0);
+  EXPECT_EQ(visit_through, whole_through);
 }
 
 TEST(PathProblem, StartsInTheRequestsState) {

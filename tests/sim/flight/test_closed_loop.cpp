@@ -263,6 +263,25 @@ TEST(ClosedLoop, WaitsClearOfATargetThatStaysBlocked) {
   }
 }
 
+// Across the target something passes every four seconds, from either side: no hover there is free for a horizon.
+TEST(ClosedLoop, ComesToATargetThatIsFreeForSecondsAndHoldsClearOfIt) {
+  config::Scenario scenario = straight();
+  scenario.target = {10, 0, 2.5};
+  for (int n = 0; n < 9; ++n) {
+    const double side = n % 2 == 0 ? -1.0 : 1.0;
+    scenario.obstacles.push_back(
+        {config::SphereShape{0.6},
+         config::LinearMotion{{10.0, side * (12.0 * n + 4.0), 2.5}, {0.0, -3.0 * side, 0.0}, Vec3::Zero()}});
+  }
+  scenario.time_limit = 25.0;
+  const Flown flown = fly(scenario, shipped_settings());
+  EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kReached) << flown.result.flight.reason;
+  EXPECT_LT(flown.result.flight.flight_time, 15.0);  // to the target; what follows does not count
+  EXPECT_GT(flown.result.min_clearance, 0.0);
+  const auto arrived = [](const std::string& event) { return event.starts_with("arrived: "); };
+  EXPECT_EQ(std::count_if(flown.hash.events.begin(), flown.hash.events.end(), arrived), 1);
+}
+
 /// A bit of everything that leaves the flight possible, in the default scenario.
 config::Scenario faulty_crossing() {
   using config::FaultKind;

@@ -214,6 +214,26 @@ TEST(FlightReplay, PlansOfAVehicleThatIsStuckAreRepeated) {
   EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
 }
 
+// That a visit of the target was enough, likewise: what comes across it passes after one.
+TEST(FlightReplay, PlansOfAVisitAreRepeated) {
+  const support::Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  bridge::companion::PlanJob next = job(0, {sphere(1, {2, 15, 2.3}, {0, -3, 0}, 0.8)});
+  next.request.target = {2, 0, 2.3};
+  next.request.velocity.setZero();
+  next.request.visit = true;
+  plans.make(std::move(next), std::chrono::seconds(10));
+  plans.close();
+  EXPECT_TRUE(compare(file).differences.empty());
+  const auto [header, line] = first_lines(file);
+  Json changed = Json::parse(line);
+  changed["from"]["visit"] = false;
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  changed["from"].erase("visit");
+  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+}
+
 /// A log of one plan, line by line: header, plan.
 std::array<std::string, 2> one_plan(const support::Folder& folder) {
   const auto file = folder.path() / "one.jsonl";
