@@ -40,10 +40,14 @@ struct PlanResult {
   bool missed = false;  ///< it came after its own start
 };
 
-/// What the job's plan is to avoid up to that planner's horizon. The request refers to it, until forget_obstacles().
+/// What the job's plan is to avoid up to that planner's horizon.
+[[nodiscard]] inline prediction::Obstacles obstacles_of(const PlanJob& job,
+                                                        const planner::base::HorizonSettings& settings) {
+  return prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+}
+/// The same. The request refers to it, until forget_obstacles().
 [[nodiscard]] inline prediction::Obstacles set_obstacles(PlanJob& job, const planner::base::HorizonSettings& settings) {
-  prediction::Obstacles obstacles =
-      prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+  prediction::Obstacles obstacles = obstacles_of(job, settings);
   job.request.tracks = obstacles.tracks;
   job.request.paths = obstacles.paths;
   return obstacles;

@@ -11,6 +11,7 @@ namespace {
 constexpr double kInset = 0.2;        // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;  // of the margin, likewise
 constexpr double kInsetSigmas = 2.0;  // of the estimate's position, likewise
+constexpr double kSinking = 0.7;      // m/s, of a landing: PX4's MPC_LAND_SPEED by default
 constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
 
 // The path as it will be flown from where the vehicle is beside it: back to it smoothly.
@@ -51,10 +52,32 @@ std::optional<PlanResult> Planning::take(double now) {
   }
   if (!result) return result;
   ++plans_;
-  stays_at_target_ = stays_at(mission_.waypoints.back(), result->plan);
+  stays_at_target_ = stays_at(mission_.waypoints.back(), result->plan) &&
+                     (mission_.arrival == config::Arrival::kHold || lands_free(*result));
   reporter_.plan(now, *result);
   if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
   return result;
+}
+
+// From where the path ends straight down to height 0, as far ahead as plans look.
+bool Planning::lands_free(const PlanResult& result) const {
+  const planner::base::HorizonSettings& horizon = settings_.horizon;
+  const prediction::Obstacles obstacles = obstacles_of(result.job, horizon);
+  planner::base::TimedPath path = result.plan.path;
+  const planner::base::TimedPoint above = path.back();
+  const double sinking = std::max(0.1, above.position.z() / kSinking);
+  const Vec3 below = above.position - Vec3(0.0, 0.0, kSinking * sinking);
+  path.push_back({above.t + sinking, below, Vec3::Zero(), Vec3::Zero()});
+  path.push_back({std::max(horizon.time, above.t + sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()});
+  return planner::verify::verify({path,
+                                  obstacles.tracks,
+                                  0.0,
+                                  mission_.vehicle.radius,
+                                  {},
+                                  horizon.acceleration_trust,
+                                  horizon.time,
+                                  obstacles.paths})
+      .free();
 }
 
 void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {

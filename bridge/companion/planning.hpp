@@ -35,7 +35,7 @@ class Planning {
   /// When the newest plan with a path was begun. One made under a hazard counts: the planner is alive.
   [[nodiscard]] std::optional<double> newest_plan() const { return newest_plan_; }
   [[nodiscard]] std::uint64_t plans() const { return plans_; }
-  /// By the newest plan the last waypoint stays free, and the vehicle there.
+  /// By the newest plan the last waypoint stays free, and the vehicle there; where it is to land, the way down, too.
   [[nodiscard]] bool stays_at_target() const { return stays_at_target_; }
   /// What the planner threw, in words, once.
   std::optional<std::string> take_failure() { return std::exchange(failure_, std::nullopt); }
@@ -43,6 +43,7 @@ class Planning {
  private:
   [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit);
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
+  [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);
 
   const config::Mission& mission_;

@@ -124,7 +124,7 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
   announce_phase(now, supervisor, intake.state());
   if (changed(said_.waiting, supervisor.waiting_for()) && !said_.waiting.empty()) event(now, "waiting", said_.waiting);
   if (changed(said_.arrived, supervisor.arrived()) && said_.phase == supervisor::Phase::kFlying)
-    event(now, "arrived", "the target does not stay free: holding out of the way of what comes");
+    event(now, "arrived", "it does not stay free there: holding out of the way of what comes");
   if (changed(said_.hazard, supervisor.hazard()))
     event(now, said_.hazard.empty() ? "hazard_over" : "hazard", said_.hazard);
   announce_vehicle(now, supervisor, intake.state().battery, margin, tracking_error);
