@@ -106,7 +106,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   job.estimate_shift = intake.estimate_shift();
   job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
-  if (mission_.tracks.sensed_from == config::SensedFrom::kWorld) blur(job, state.position_sigma);
+  const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
+  if (in_world) blur(job, state.position_sigma);
 
   const bool lost = motion.lost(state);
   reporter_.reference_lost(now, lost, motion.error(state));
@@ -127,6 +128,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.stuck = visit && route.stuck(now, state.motion.value.position);
   reporter_.stuck(now, request.stuck);
   request.margin = motion.margin();
+  if (in_world) request.margin = std::hypot(request.margin, state.position_sigma);
   double& largest_margin = reporter_.summary().largest_margin;
   largest_margin = std::max(largest_margin, request.margin);
   request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
