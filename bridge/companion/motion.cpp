@@ -12,7 +12,7 @@ namespace {
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
-constexpr double kTakeoffTolerance = 0.3;  // m
+constexpr double kTakeoffTolerance = 0.5;  // m
 
 using Motion = supervisor::Decision::Motion;
 

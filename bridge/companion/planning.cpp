@@ -127,7 +127,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.visit = visit;
   request.stuck = visit && route.stuck(now, state.motion.value.position);
   reporter_.stuck(now, request.stuck);
-  request.margin = motion.margin();
+  // Gaps are as wide as they are: who has waited in vain for one does not ask for more than is asked for at the start.
+  request.margin = request.stuck ? settings_.horizon.margin : motion.margin();
   if (in_world) request.margin = std::hypot(request.margin, state.position_sigma);
   double& largest_margin = reporter_.summary().largest_margin;
   largest_margin = std::max(largest_margin, request.margin);

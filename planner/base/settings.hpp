@@ -65,7 +65,7 @@ struct HorizonSettings {
   int sharing = 3;                   ///< l, as OptimizerSettings::sharing
   int population = 48;               ///< n_pop, as OptimizerSettings::population
   int generations = 100;             ///< budget of one plan in virtual time, and the upper bound in real time
-  double deadline_ms = 8.0;          ///< budget of one plan in real time
+  double deadline_ms = 6.0;          ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
   double back_range = 2.0;           ///< how far they may fall back behind the start
   double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them

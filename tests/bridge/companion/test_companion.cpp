@@ -92,6 +92,19 @@ TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
   EXPECT_EQ(request.track_acceleration, planner::base::HorizonSettings{}.track_acceleration);
 }
 
+// From what an external tracker sees; with onboard perception the relative position is right.
+TEST(Companion, KeepsWhatItsOwnEstimateIsOffByFromTracksOfTheWorld) {
+  const double least = planner::base::HorizonSettings{}.margin;
+  for (const bool world : {true, false}) {
+    config::Mission m = Loop::mission();
+    m.tracks.sensed_from = world ? config::SensedFrom::kWorld : config::SensedFrom::kVehicle;
+    Loop loop(m);
+    loop.link.telemetry.position_sigma = 0.4;
+    loop.airborne().fly();
+    EXPECT_DOUBLE_EQ(loop.planner.jobs.back().request.margin, world ? std::hypot(least, 0.4) : least);
+  }
+}
+
 TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
   Loop loop;
   loop.airborne({0, 11, 0.8}).fly();
@@ -151,6 +164,7 @@ TEST(Companion, LooksForAWayRoundWhereItComesNoNearer) {
   loop.run(1.0);
   for (const PlanJob& job : loop.planner.jobs) {
     EXPECT_EQ(job.request.stuck, job.begun > begun + 3.99 && job.begun < moved) << job.begun - begun;
+    if (job.request.stuck) EXPECT_EQ(job.request.margin, planner::base::HorizonSettings{}.margin);
   }
   EXPECT_EQ(loop.recorder.count("stuck"), 2);
 }
