@@ -17,9 +17,9 @@ constexpr double kCautious = 0.3;     // of the cruise speed, while what moves n
 // The path as it will be flown from where the vehicle is beside it: back to it smoothly.
 planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& from) {
   const double left = path.back().t - path.front().t;
-  return setpoints::OffsetForecast{path.front().t, from - path.front().position,
-                                   std::min(setpoints::OffsetForecast::kFade, left)}
-      .added_to(std::move(path));
+  const setpoints::OffsetForecast beside{path.front().t, from - path.front().position,
+                                         std::min(setpoints::OffsetForecast::kFade, left)};
+  return beside.added_to(std::move(path));
 }
 
 // Free, verified, and never farther away than where it begins.

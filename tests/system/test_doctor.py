@@ -63,7 +63,7 @@ def test(jink, instance):
     with Arena(jink, int(instance)) as arena:
         mission = arena.mission("sitl")
 
-        status, checks, text = doctor(arena, mission, "--seconds", "2")
+        status, checks, text = doctor(arena, mission, "--seconds", "4")
         check(status == 3 and checks["autopilot"]["level"] == "missing", "nobody there: exit status 3")
         check(checks["rt/jink/obstacle_tracks"]["level"] == "missing", "and no writer of tracks")
         check("jink sim" in checks["autopilot"]["remedy"] and "\033" not in text, "the remedy is said, without colours")
@@ -103,19 +103,20 @@ def test(jink, instance):
         peer = SOURCE / "tests" / "bridge" / "mavsdk" / "px4_peer.py"
         with subprocess.Popen([sys.executable, str(peer), "--port", str(14540 + arena.instance), "--system", "99"],
                               stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as second:
-            _, checks, _ = doctor(arena, mission, "--seconds", "3")
+            _, checks, _ = doctor(arena, mission, "--seconds", "4")
             second.stdin.close()
         check(checks["other autopilots"]["level"] == "warning", "a second autopilot is warned of")
 
         outside = arena.mission("sitl", geofence={"min": [10, -50, 0], "max": [50, 50, 20]})
-        status, checks, _ = doctor(arena, outside, "--seconds", "2")
-        check(status == 1 and checks["geofence"]["level"] == "fault", "a vehicle outside of the geofence: exit status 1")
+        status, checks, _ = doctor(arena, outside, "--seconds", "4")
+        check(status == 1 and checks["geofence"]["level"] == "fault",
+              f"a vehicle outside of the geofence: exit status {status}, {checks['geofence']}")
 
         elsewhere = arena.mission("sitl", dds={"domain": arena.domain + 50})
-        status, checks, _ = doctor(arena, elsewhere, "--seconds", "2")
+        status, checks, _ = doctor(arena, elsewhere, "--seconds", "4")
         check(status == 3 and checks["rt/jink/obstacle_tracks"]["level"] == "missing", "no tracks there: exit status 3")
         optional = arena.mission("sitl", dds={"domain": arena.domain + 50}, tracks={"required": False})
-        status, checks, _ = doctor(arena, optional, "--seconds", "2")
+        status, checks, _ = doctor(arena, optional, "--seconds", "4")
         check(status == 0 and checks["rt/jink/obstacle_tracks"]["level"] == "warning", "not required: a warning")
 
         bad = subprocess.run([str(jink), "doctor", str(mission), "--seconds", "0"], capture_output=True, text=True)
