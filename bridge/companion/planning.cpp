@@ -22,10 +22,11 @@ planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& fro
   return beside.added_to(std::move(path));
 }
 
-// Free, verified, and never farther away than where it begins.
+// Free, verified, and never farther away than where it begins, which is there or nearly.
 bool stays_at(const Vec3& place, const planner::verify::Plan& plan) {
   if (plan.status != planner::verify::PlanStatus::kReaches) return false;
   const double begins = (plan.path.front().position - place).norm();
+  if (begins > Route::kPassing) return false;  // nobody asks yet, and the way down need not be looked at
   return std::all_of(plan.path.begin(), plan.path.end(), [&](const planner::base::TimedPoint& point) {
     return (point.position - place).norm() <= std::max(Route::kArrival, begins);
   });

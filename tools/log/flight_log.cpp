@@ -191,14 +191,8 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
     line_.exact(limit);
   line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
   line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
-  line_.key("acceleration_trust")
-      .exact(trust)
-      .key("stuck")
-      .flag(stuck)
-      .key("visit")
-      .flag(visit)
-      .key("tracks")
-      .open('[');
+  line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
+  line_.key("tracks").open('[');
   for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age] : job.tracks) {
     line_.open('[').integer(id);
     for (const Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());

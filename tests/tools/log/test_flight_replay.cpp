@@ -196,42 +196,35 @@ TEST(FlightReplay, PlansAmongATeamsPathsAreRepeated) {
   EXPECT_THROW(compare(folder.log(header + "\n" + changed.dump() + "\n")), std::runtime_error);
 }
 
-// That the vehicle was stuck is recorded, and decides; a log from before it was says nothing of it, and is read.
-TEST(FlightReplay, PlansOfAVehicleThatIsStuckAreRepeated) {
+/// That a flag of the request is recorded, and decides; a log from before it was says nothing of it, and is read.
+void expect_flag_decides(const char* flag, bridge::companion::PlanJob next) {
   const support::Folder folder;
   const auto file = folder.path() / "flight.jsonl";
   RealTimePlans plans(file);
-  bridge::companion::PlanJob next = job(0, {sphere(1, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8)});
-  next.request.stuck = true;
   plans.make(std::move(next), std::chrono::seconds(10));
   plans.close();
   EXPECT_TRUE(compare(file).differences.empty());
   const auto [header, line] = first_lines(file);
   Json changed = Json::parse(line);
-  changed["from"]["stuck"] = false;
+  changed["from"][flag] = false;
   EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
-  changed["from"].erase("stuck");
+  changed["from"].erase(flag);
   EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
 }
 
-// That a visit of the target was enough, likewise: what comes across it passes after one.
+TEST(FlightReplay, PlansOfAVehicleThatIsStuckAreRepeated) {
+  bridge::companion::PlanJob next = job(0, {sphere(1, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8)});
+  next.request.stuck = true;
+  expect_flag_decides("stuck", std::move(next));
+}
+
+// What comes across the target passes after a visit.
 TEST(FlightReplay, PlansOfAVisitAreRepeated) {
-  const support::Folder folder;
-  const auto file = folder.path() / "flight.jsonl";
-  RealTimePlans plans(file);
   bridge::companion::PlanJob next = job(0, {sphere(1, {2, 15, 2.3}, {0, -3, 0}, 0.8)});
   next.request.target = {2, 0, 2.3};
   next.request.velocity.setZero();
   next.request.visit = true;
-  plans.make(std::move(next), std::chrono::seconds(10));
-  plans.close();
-  EXPECT_TRUE(compare(file).differences.empty());
-  const auto [header, line] = first_lines(file);
-  Json changed = Json::parse(line);
-  changed["from"]["visit"] = false;
-  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
-  changed["from"].erase("visit");
-  EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  expect_flag_decides("visit", std::move(next));
 }
 
 /// A log of one plan, line by line: header, plan.
