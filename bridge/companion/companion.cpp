@@ -55,7 +55,7 @@ bool Companion::step(double now) {
   if (const supervisor::Phase phase = supervisor_.phase();
       phase == supervisor::Phase::kFlying || phase == supervisor::Phase::kStopping) {
     if (!supervisor_.arrived()) reporter_.flown(now, state);
-    motion_.observe(now, dt, state);
+    motion_.observe(now, state);
   }
   const supervisor::Decision decision = supervisor_.update(now, state, context(now));
   reporter_.hazard_lasts(now, supervisor_.hazard());

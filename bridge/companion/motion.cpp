@@ -126,14 +126,16 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
   return *yaw_;
 }
 
-void MotionControl::observe(double now, double dt, const vehicle::VehicleState& state) {
+void MotionControl::observe(double now, const vehicle::VehicleState& state) {
   if (!stream_.active() || state.motion.age(now) > settings_.companion.stale_state) return;
-  stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity, dt);
-  const Vec3 offset = state.motion.value.position - stream_.reference(state.motion.stamp).position;
+  stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity);
+  const planner::base::TimedPoint reference = stream_.reference(state.motion.stamp);
+  const Vec3 offset = state.motion.value.position - reference.position;
   double& largest = reporter_.summary().largest_tracking_error;
   largest = std::max(largest, offset.norm());
   if (offset.norm() > kLostReference) return offset_.forget();
-  offset_.observe(state.motion.stamp, offset);
+  offset_.observe(state.motion.stamp, offset,
+                  state.motion.value.velocity - stream_.velocity_error() - reference.velocity);
 }
 
 void MotionControl::shift(const Vec3& by) {

@@ -34,7 +34,7 @@ class MotionControl {
   /// is to turn at all.
   void send(double now, double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
   /// Learns from where the vehicle is on its reference.
-  void observe(double now, double dt, const vehicle::VehicleState& state);
+  void observe(double now, const vehicle::VehicleState& state);
   /// The autopilot's estimate jumped by that.
   void shift(const Vec3& by);
 

@@ -12,7 +12,7 @@
 
 #include "bridge/base/clock.hpp"
 #include "bridge/base/notifier.hpp"
-#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 #include "bridge/setpoints/tracking_offset.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 

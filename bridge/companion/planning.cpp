@@ -8,17 +8,21 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kInset = 0.2;        // of the flight volume, at most, that paths keep away from its bounds
-constexpr double kInsetMargin = 0.3;  // of the margin, likewise
-constexpr double kInsetSigmas = 2.0;  // of the estimate's position, likewise
-constexpr double kSinking = 0.7;      // m/s, of a landing: PX4's MPC_LAND_SPEED by default
-constexpr double kCautious = 0.3;     // of the cruise speed, while what moves nearby is unexplained
+constexpr double kInset = 0.2;          // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInsetMargin = 0.3;    // of the margin, likewise
+constexpr double kInsetSigmas = 2.0;    // of the estimate's position, likewise
+constexpr double kSinking = 0.7;        // m/s, of a landing: PX4's MPC_LAND_SPEED by default
+constexpr double kRejoining = 1.0;      // m/s², at most, of the way back to a plan that is kept
+constexpr double kFadeCurvature = 5.8;  // the largest of an OffsetForecast's, of an offset of 1 in a time of 1
+constexpr double kCautious = 0.3;       // of the cruise speed, while what moves nearby is unexplained
 
-// The path as it will be flown from where the vehicle is beside it: back to it smoothly.
-planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& from) {
-  const double left = path.back().t - path.front().t;
-  const setpoints::OffsetForecast beside{path.front().t, from - path.front().position,
-                                         std::min(setpoints::OffsetForecast::kFade, left)};
+// The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
+planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& position, const Vec3& velocity) {
+  const planner::base::TimedPoint first = path.front();
+  setpoints::OffsetForecast beside{first.t, position - first.position, path.back().t - first.t,
+                                   velocity - first.velocity};
+  const double way = beside.offset.norm() + setpoints::OffsetForecast::kRateFade * beside.rate.norm();
+  beside.fade = std::min(beside.fade, std::sqrt(kFadeCurvature * way / kRejoining));
   return beside.added_to(std::move(path));
 }
 
@@ -140,7 +144,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
     job.previous = stream.plan(job.start);
     // A plan to another waypoint is no plan to keep.
     if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
-    if (!job.previous.empty()) job.previous = rejoined(std::move(job.previous), request.position);
+    if (!job.previous.empty()) job.previous = rejoined(std::move(job.previous), request.position, request.velocity);
     for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
   }
   return job;

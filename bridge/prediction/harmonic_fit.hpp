@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::bridge::prediction {

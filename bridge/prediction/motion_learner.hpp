@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bridge/prediction/forecast.hpp"
 #include "bridge/prediction/harmonic_fit.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::bridge::prediction {

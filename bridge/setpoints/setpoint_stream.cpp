@@ -15,8 +15,11 @@ constexpr double kAtRest = 0.02;            // m/s
 constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
 constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
 constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
-constexpr double kLearningRate = 1.0;       // 1/s, of normalised least mean squares
+constexpr double kLearningRate = 6.0;       // 1/s, of normalised least mean squares
+constexpr double kLongestPause = 0.2;       // s, between two observations
+constexpr double kMostLacking = 5.0;        // m/s²; more is a reference that jumped
 constexpr double kMostDrag = 2.0;           // 1/s
+constexpr double kMostDamping = 0.5;        // of the acceleration
 // Of PX4's cascade (MPC_XY_P, MPC_XY_VEL_P_ACC): the acceleration that it makes of errors is what the feed-forward
 // lacked. Other gains make the learning faster or slower.
 constexpr double kVelocityGain = 1.8;                   // 1/s
@@ -97,18 +100,25 @@ void SetpointStream::shift(const Vec3& by) {
   velocity_error_.forget();
 }
 
-void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity, double dt) {
+void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity) {
   velocity_error_.observe(t, position, velocity);
+  const std::optional<VelocityLag> last = std::exchange(lag_, std::nullopt);
   if (!active() || !is_plan_) return;
   const planner::base::TimedPoint point = reference(t);
+  const Vec3 late = point.position - position;
+  lag_ = VelocityLag{t, point.velocity - velocity + velocity_error_.value()};
+  if (!last || t <= last->t || t > last->t + kLongestPause) return;
   const double speed = point.velocity.norm();
   if (speed < kLearningSpeed) return;
-  const double lag = (point.position - position).dot(point.velocity) / speed;
-  if (lag > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
-  const Vec3 lacking = kPositionGain * (point.position - position) +
-                       kVelocityGain * (point.velocity - velocity + velocity_error_.value());
+  if (late.dot(point.velocity) > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
+  // What the autopilot makes of the errors, and by what the vehicle gets slower for all that.
+  const double dt = t - last->t;
+  Vec3 lacking = kPositionGain * late + kVelocityGain * lag_->value + (lag_->value - last->value) / dt;
+  lacking *= std::min(1.0, kMostLacking / lacking.norm());
   const double step = kLearningRate * dt / (1.0 + point.velocity.squaredNorm() + point.acceleration.squaredNorm());
   drag_ = std::clamp(drag_ + step * lacking.dot(point.velocity), 0.0, kMostDrag);
+  const double of_acceleration = lacking.head<2>().dot(point.acceleration.head<2>());
+  damping_ = std::clamp(damping_ + step * of_acceleration, 0.0, kMostDamping);
 }
 
 planner::base::TimedPoint SetpointStream::reference(double t) const {
@@ -119,7 +129,7 @@ planner::base::TimedPoint SetpointStream::reference(double t) const {
 vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
   const planner::base::TimedPoint point = reference(now + settings_.lead);
   const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead);
-  const double taken_off = 1.0 + settings_.damping;
+  const double taken_off = 1.0 + damping_;
   const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
   return {point.position, point.velocity + velocity_error_.value(), acceleration + drag_ * later.velocity, yaw};
 }

@@ -18,13 +18,14 @@ class SetpointStream {
     double lead = 0.0;               ///< s: position and velocity are the reference's that much later (transport)
     double acceleration_lead = 0.0;  ///< s: the acceleration is (attitude loop and rotors too)
     double drag = 0.0;               ///< 1/s: deceleration per speed that the acceleration makes up for, to begin with
-    double damping = 0.0;            ///< of a commanded acceleration, that the autopilot takes off again, horizontally
+    double damping = 0.0;            ///< of an acceleration, that the autopilot takes off again, horizontally; likewise
     double braking = 2.0;            ///< m/s², deceleration of a brake
     double hardest = 6.0;            ///< m/s², of a brake that would leave the volume
     planner::base::Box volume{};     ///< in which a brake is to end
     double max_speed = planner::base::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
   };
-  explicit SetpointStream(const Settings& settings) : settings_(settings), drag_(settings.drag) {}
+  explicit SetpointStream(const Settings& settings)
+      : settings_(settings), drag_(settings.drag), damping_(settings.damping) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
@@ -45,13 +46,17 @@ class SetpointStream {
   /// (VelocityError), so that the vehicle's own is the reference's.
   [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw) const;
 
-  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t; `dt` since the last call. Learns
-  /// the drag from it, but not at the largest speed, at which no thrust makes good what is late.
-  void observe(double t, const Vec3& position, const Vec3& velocity, double dt);
+  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t. Learns drag and damping from it,
+  /// but not at the largest speed, at which no thrust makes good what is late.
+  void observe(double t, const Vec3& position, const Vec3& velocity);
   /// The drag that setpoints make up for now, 1/s.
   [[nodiscard]] double drag() const { return drag_; }
+  /// The share of an acceleration that they add to it now.
+  [[nodiscard]] double damping() const { return damping_; }
 
   [[nodiscard]] bool active() const { return !current_.empty(); }
+  /// Of the autopilot's estimate, m/s: estimated minus true.
+  [[nodiscard]] Vec3 velocity_error() const { return velocity_error_.value(); }
   [[nodiscard]] bool braking() const { return is_braking_; }
   /// The path that follow() was given last, from time t on, for the planner's warm start; empty while holding or
   /// braking.
@@ -65,7 +70,13 @@ class SetpointStream {
 
   Settings settings_;
   VelocityError velocity_error_;
+  struct VelocityLag {
+    double t;    // s
+    Vec3 value;  // m/s, reference minus vehicle
+  };
+  std::optional<VelocityLag> lag_;
   double drag_;
+  double damping_;
   bool is_plan_ = false;
   bool is_braking_ = false;
   planner::base::TimedPath current_;

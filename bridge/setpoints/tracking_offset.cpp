@@ -35,7 +35,11 @@ planner::base::TimedPoint OffsetForecast::at(double t) const {
   const double left = 1.0 - s * s * s * (10.0 - s * (15.0 - 6.0 * s));
   const double slope = -30.0 * s * s * (1.0 - s) * (1.0 - s) / fade;
   const double curvature = -60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (fade * fade);
-  return {t, left * offset, slope * offset, curvature * offset};
+  const double since = std::max(0.0, t - begun);
+  const double rate_left = std::exp(-since / kRateFade);
+  const Vec3 way = offset + kRateFade * (1.0 - rate_left) * rate;
+  const Vec3 velocity = rate_left * rate;
+  return {t, left * way, slope * way + left * velocity, curvature * way + (2.0 * slope - left / kRateFade) * velocity};
 }
 
 planner::base::TimedPath OffsetForecast::added_to(planner::base::TimedPath reference) const {
@@ -46,9 +50,9 @@ planner::base::TimedPath OffsetForecast::taken_off(planner::base::TimedPath flow
   return moved(std::move(flown), *this, -1.0);
 }
 
-void TrackingOffset::observe(double t, const Vec3& offset) {
+void TrackingOffset::observe(double t, const Vec3& offset, const Vec3& rate) {
   if (kept_at_ && t <= newest_.begun) return;
-  newest_ = {t, offset};
+  newest_ = {t, offset, OffsetForecast::kFade, rate};
   if (kept_at_ && t - *kept_at_ < kPeriod - kJitter) return;
   kept_at_ = t;
   judge();

@@ -5,7 +5,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "bridge/prediction/prediction.hpp"
+#include "bridge/prediction/plain_prediction.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "bridge/prediction/forecast.hpp"
 #include "bridge/prediction/imm_filter.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 #include "bridge/prediction/motion_learner.hpp"
 #include "bridge/tracking/clock_offset.hpp"
 #include "bridge/tracking/track_source.hpp"

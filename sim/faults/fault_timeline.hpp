@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The timeline of a scenario's faults: given the time, what is in force. Pure: no socket, no clock, nothing at random.
 // Who does what they say: sim/faults/track_faults (tracks), sim/faults/vehicle_faults (autopilot),
-// sim/faults/impairment (link).
+// sim/faults/link_faults (link).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/faults.hpp"
-#include "sim/faults/impairment.hpp"
+#include "sim/faults/link_faults.hpp"
 
 namespace jink::sim::faults {
 

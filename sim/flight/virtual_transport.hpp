@@ -13,7 +13,7 @@
 #include "bridge/tracking/track_source.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "sim/faults/fault_timeline.hpp"
-#include "sim/faults/impairment.hpp"
+#include "sim/faults/link_faults.hpp"
 #include "sim/faults/track_faults.hpp"
 #include "sim/vehicle/autopilot.hpp"
 #include "sim/vehicle/frame_conversions.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/faults/impairment.hpp"
+#include "sim/faults/link_faults.hpp"
 #include "sim/vehicle/autopilot.hpp"
 #include "sim/vehicle/frame_conversions.hpp"
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/faults/impairment.hpp"
+#include "sim/faults/link_faults.hpp"
 #include "sim/mavlink/udp_socket.hpp"
 
 namespace jink::sim::mavlink {

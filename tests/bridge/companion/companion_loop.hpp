@@ -40,8 +40,9 @@ struct Loop {
     if (obeys) obey();
     const bool flies = state.armed && state.mode == vehicle::FlightMode::kOffboard && !link.sent.empty() && follows;
     if (flies) {
+      beside += kTurn * drift;
       state.motion.value.position = link.sent.back().position + beside;
-      state.motion.value.velocity = link.sent.back().velocity;
+      state.motion.value.velocity = link.sent.back().velocity + drift;
       state.in_air = state.in_air || state.motion.value.position.z() > 0.2;
     }
     now += kTurn;
@@ -83,6 +84,7 @@ struct Loop {
   companion::Companion companion;
   std::vector<planner::base::Track> seen;
   Vec3 beside = Vec3::Zero();  // what the vehicle is off its setpoint
+  Vec3 drift = Vec3::Zero();   // m/s, and by what that grows
   double now = 0.0;
   bool heartbeats = true, positions = true, tracks = true, obeys = true, follows = true;
   std::size_t obeyed = 0;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/base/trajectory.hpp"
 #include "tests/bridge/companion/companion_loop.hpp"
 
 namespace jink::bridge::companion {
@@ -230,6 +231,27 @@ TEST(Companion, AVehicleBesideItsReferenceIsPlannedFromWhereItIsAndTheReferenceD
   loop.run(1.0);
   for (std::size_t i = sent; i + 1 < loop.link.sent.size(); ++i)
     EXPECT_LT((loop.link.sent[i + 1].position - loop.link.sent[i].position).norm(), 0.06) << i;
+}
+
+// It lags behind a reference that dodges: what is planned from the reference's velocity is not what is flown.
+TEST(Companion, APlanBeginsWithTheVehiclesVelocityAndOneThatIsKeptIsSoonRejoined) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.drift = {-0.4, 0.3, 0};
+  loop.run(0.2);
+  const PlanJob& job = loop.planner.jobs.back();
+  EXPECT_LT((job.offset.rate - loop.drift).norm(), 0.01);
+  ASSERT_FALSE(job.previous.empty());
+  EXPECT_LT((job.previous.front().velocity - job.request.velocity).norm(), 1e-9);
+  const PlanJob& before = *(loop.planner.jobs.end() - 2);
+  const planner::base::TimedPath planned = loop.planner.straight(before.request);
+  const auto beside = [&](double t) {
+    return (planner::base::sample(job.previous, t).position -
+            planner::base::sample(planned, t + job.start - before.start).position)
+        .norm();
+  };
+  EXPECT_GT(beside(0.0), 0.005);
+  EXPECT_LT(beside(2.0), 1e-6);
 }
 
 TEST(Companion, CountsALatePlanAsAMiss) {

@@ -29,6 +29,21 @@ TEST(OffsetForecast, DiesDownSmoothly) {
   }
 }
 
+TEST(OffsetForecast, ItsRateDiesDownSooner) {
+  const OffsetForecast forecast{2.0, {1, 0, 0}, OffsetForecast::kFade, {0, -1, 0.5}};
+  EXPECT_EQ(forecast.at(2.0).velocity, forecast.rate);
+  EXPECT_NEAR(forecast.at(2.1).position.y(), -0.6 * (1 - std::exp(-0.1 / 0.6)), 1e-4);
+  EXPECT_NEAR(forecast.at(2.0 + OffsetForecast::kRateFade).velocity.z(), 0.5 / std::numbers::e, 0.02);
+  EXPECT_LT(forecast.at(8.0).position.norm() + forecast.at(8.0).velocity.norm(), 1e-12);
+  constexpr double kStep = 1e-4;  // s
+  for (double t = 2.2; t < 8.0; t += 0.37) {
+    const TimedPoint before = forecast.at(t - kStep);
+    const TimedPoint after = forecast.at(t + kStep);
+    EXPECT_LT((forecast.at(t).velocity - (after.position - before.position) / (2 * kStep)).norm(), 1e-6) << t;
+    EXPECT_LT((forecast.at(t).acceleration - (after.velocity - before.velocity) / (2 * kStep)).norm(), 1e-6) << t;
+  }
+}
+
 TEST(OffsetForecast, WhatIsAddedCanBeTakenOff) {
   const OffsetForecast forecast{0.0, {0.3, 0.2, -0.1}, 1.0};
   TimedPath path;
@@ -54,7 +69,7 @@ TEST(TrackingOffset, ForecastsTheNewestAndKnowsHowWrongItWas) {
   EXPECT_FALSE(offset.error());
   double t = 0.0;
   const auto run = [&](double seconds, const auto& value) {
-    for (const double end = t + seconds; t < end; t += 0.02) offset.observe(t, value(t));
+    for (const double end = t + seconds; t < end; t += 0.02) offset.observe(t, value(t), Vec3::Zero());
   };
   run(1.9, [](double) { return Vec3(0.5, 0, 0); });
   EXPECT_FALSE(offset.error());  // too few forecasts have come to their second
@@ -71,15 +86,15 @@ TEST(TrackingOffset, ForecastsTheNewestAndKnowsHowWrongItWas) {
 
 TEST(TrackingOffset, AJumpOfTheReferenceIsNotAnErrorAndTimesThatDoNotGrowAreNone) {
   TrackingOffset offset;
-  for (double t = 0.0; t < 4.0; t += 0.02) offset.observe(t, {0.9, 0, 0});
+  for (double t = 0.0; t < 4.0; t += 0.02) offset.observe(t, {0.9, 0, 0}, Vec3::Zero());
   const double before = offset.error().value();
   offset.forget();
   EXPECT_EQ(offset.forecast().offset, Vec3::Zero());
-  for (double t = 4.0; t < 8.0; t += 0.02) offset.observe(t, {0, 0.1, 0});
+  for (double t = 4.0; t < 8.0; t += 0.02) offset.observe(t, {0, 0.1, 0}, Vec3::Zero());
   EXPECT_LE(*offset.error(), before);
   const OffsetForecast newest = offset.forecast();
-  offset.observe(newest.begun, {7, 7, 7});
-  offset.observe(newest.begun - 1.0, {7, 7, 7});
+  offset.observe(newest.begun, {7, 7, 7}, {1, 1, 1});
+  offset.observe(newest.begun - 1.0, {7, 7, 7}, {1, 1, 1});
   EXPECT_EQ(offset.forecast().offset, newest.offset);
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/faults/impairment.hpp"
+#include "sim/faults/link_faults.hpp"
 #include "sim/faults/vehicle_faults.hpp"
 #include "tests/sim/examples.hpp"
 

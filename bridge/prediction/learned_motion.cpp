@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

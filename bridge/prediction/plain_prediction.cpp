@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridge/prediction/prediction.hpp"
+#include "bridge/prediction/plain_prediction.hpp"
 
 #include <algorithm>
 

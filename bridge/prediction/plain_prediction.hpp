@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plain prediction of a track. What has been learned of a track's motion goes beyond it: motion_learner, forecast.
+// The plain prediction of a track. What has been learned of its motion goes beyond it: motion_learner, learned_motion.
 #pragma once
 
 #include "bridge/base/stamped.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridge/prediction/forecast.hpp"
+#include "bridge/prediction/learned_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -227,18 +227,18 @@ struct Noisy {
   /// A fit at most every `pause` seconds.
   template <typename Motion>
   void observe(Motion motion, double t, double pause) {
-    constexpr double kPositionSigma = 0.1, kVelocitySigma = 0.3;
+    constexpr double kPositionNoise = 0.1, kVelocityNoise = 0.3;
     Track measured = exact(motion, t);
     measured.acceleration.setZero();
-    measured.position_sigma = kPositionSigma;
-    measured.velocity_sigma = kVelocitySigma;
+    measured.position_sigma = kPositionNoise;
+    measured.velocity_sigma = kVelocityNoise;
     const auto noise = [&] {
       const double x = random.normal();
       const double y = random.normal();
       return Vec3(x, y, random.normal());
     };
-    measured.position += kPositionSigma * noise();
-    measured.velocity += kVelocitySigma * noise();
+    measured.position += kPositionNoise * noise();
+    measured.velocity += kVelocityNoise * noise();
     last = measured;
     filter.update(kStep, measured);
     filter.apply(last);
