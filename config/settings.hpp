@@ -15,7 +15,7 @@ namespace jink::config {
 struct CompanionSettings {
   double setpoint_rate_hz = 50.0;
   double replan_rate_hz = 10.0;          ///< at least, also where no new tracks come
-  double largest_replan_rate_hz = 40.0;  ///< at most: a new track message starts a plan at once, but no sooner
+  double largest_replan_rate_hz = 40.0;  ///< on average: a new track message starts a plan at once, unless that is more
   double planner_latency_ms = 20.0;      ///< in virtual time: from a plan's start to its use
   double commitment = 0.2;      ///< from a plan's beginning to its start at the least: the present plan is flown until
                                 ///< then, since the vehicle answers a new acceleration that late

@@ -9,6 +9,9 @@
 namespace jink::bridge::companion {
 namespace {
 
+constexpr double kBackOff = 0.7;           // of the share that was asked for when the reference was lost
+constexpr double kLeastShare = 0.25;       // that is asked for
+constexpr double kRecovery = 0.01;         // 1/s, of the share
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
@@ -133,9 +136,18 @@ void MotionControl::observe(double now, const vehicle::VehicleState& state) {
   const Vec3 offset = state.motion.value.position - reference.position;
   double& largest = reporter_.summary().largest_tracking_error;
   largest = std::max(largest, offset.norm());
-  if (offset.norm() > kLostReference) return offset_.forget();
+  const bool was_lost = std::exchange(was_lost_, offset.norm() > kLostReference);
+  if (was_lost_ && !was_lost) {
+    share_ = std::max(kLeastShare, kBackOff * share(now));
+    lost_at_ = now;
+  }
+  if (was_lost_) return offset_.forget();
   offset_.observe(state.motion.stamp, offset,
                   state.motion.value.velocity - stream_.velocity_error() - reference.velocity);
+}
+
+double MotionControl::share(double now) const {
+  return std::min(1.0, share_ + kRecovery * (now - lost_at_));
 }
 
 void MotionControl::shift(const Vec3& by) {

@@ -43,6 +43,9 @@ class MotionControl {
   [[nodiscard]] double error(const vehicle::VehicleState& state) const;
   /// So far from its reference the vehicle has lost it.
   [[nodiscard]] bool lost(const vehicle::VehicleState& state) const { return error(state) > kLostReference; }
+  /// The share of the stated acceleration and cruise speed that is asked for: less after each time that the reference
+  /// was lost, for a vehicle that cannot follow, and slowly all again.
+  [[nodiscard]] double share(double now) const;
   /// How far the vehicle is beside its reference, and how well that is foreseen.
   [[nodiscard]] const setpoints::TrackingOffset& offset() const { return offset_; }
   /// What plans are to keep from obstacles: the margin of the settings, or what the vehicle was off from where it was
@@ -72,6 +75,9 @@ class MotionControl {
   setpoints::SetpointStream stream_;
   std::optional<Vec3> takeoff_point_;  // none: not taking off
   setpoints::TrackingOffset offset_;
+  bool was_lost_ = false;
+  double share_ = 1.0;  // at lost_at_
+  double lost_at_ = 0.0;
   std::optional<double> last_sent_;
   bool new_plan_ = false;  // since then
   std::optional<UnsentTrack> unsent_track_;

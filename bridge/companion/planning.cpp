@@ -88,11 +88,16 @@ bool Planning::lands_free(const PlanResult& result) const {
 void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {
   const config::CompanionSettings& companion = settings_.companion;
   if (failed_ || planner_.busy()) return;
-  const double period = 1.0 / (new_tracks_ ? companion.largest_replan_rate_hz : companion.replan_rate_hz);
-  if (last_begun_ && now - *last_begun_ + 1e-6 < period) return;
+  // One may come a period early: a message that comes late is followed by one that does not.
+  const double period = 1.0 / companion.largest_replan_rate_hz;
+  const double due = new_tracks_ ? rate_kept_ - period : last_begun_.value_or(0.0) + 1.0 / companion.replan_rate_hz;
+  if (last_begun_ && now + 1e-6 < due) return;
+  rate_kept_ = std::max(rate_kept_, now) + period;
+  PlanJob next = job(now, intake, motion, route, visit);
+  // What came before the first plan waited for the flight to begin.
+  if (new_tracks_ && last_begun_) next.newest_track = intake.table().newest_message();
   last_begun_ = now;
   new_tracks_ = false;
-  PlanJob next = job(now, intake, motion, route, visit);
   try {
     planner_.start(std::move(next));
   } catch (const std::exception& failure) {
@@ -107,7 +112,6 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   job.number = plans_;
   job.begun = now;
   job.start = now + std::max(planner_.latency(), settings_.companion.commitment);
-  job.newest_track = intake.table().newest_message();
   job.estimate_shift = intake.estimate_shift();
   job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
@@ -115,7 +119,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   if (in_world) blur(job, state.position_sigma);
 
   const bool lost = motion.lost(state);
-  reporter_.reference_lost(now, lost, motion.error(state));
+  const double share = motion.share(now);
+  reporter_.reference_lost(now, lost, motion.error(state), share);
   // The plan begins where the vehicle will be, which is beside its reference.
   if (!lost) job.offset = motion.offset().forecast();
   const planner::base::TimedPoint reference = stream.reference(job.start);
@@ -125,6 +130,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   request.velocity = lost ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
   request.target = route.target();
   request.vehicle = mission_.vehicle;
+  request.vehicle.max_acceleration *= share;
+  request.vehicle.cruise_speed *= share;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
   const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);

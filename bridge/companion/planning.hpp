@@ -52,6 +52,7 @@ class Planning {
   FlightReporter& reporter_;
   std::optional<double> last_begun_;
   bool new_tracks_ = false;  // since then
+  double rate_kept_ = 0.0;   // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;
   std::uint64_t plans_ = 0;
   bool stays_at_target_ = false;

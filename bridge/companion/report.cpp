@@ -95,9 +95,11 @@ void FlightReporter::hazard_lasts(double now, const std::string& hazard) {
   summary_.hazards.back().duration = now - summary_.hazards.back().t;
 }
 
-void FlightReporter::reference_lost(double now, bool lost, double error) {
+void FlightReporter::reference_lost(double now, bool lost, double error, double share) {
   if (changed(said_.reference_lost, lost) && lost)
-    event(now, "reference_lost", "tracking error " + base::metres(error) + ": planning from the vehicle's position");
+    event(now, "reference_lost",
+          "tracking error " + base::metres(error) + ": planning from the vehicle's position, with " +
+              std::to_string(std::lround(100.0 * share)) + " % of the speed and the acceleration");
 }
 
 void FlightReporter::cautious(double now, bool cautious) {

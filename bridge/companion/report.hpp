@@ -86,7 +86,7 @@ class FlightReporter {
   void hazard_lasts(double now, const std::string& hazard);
 
   // What lasts, each time that it is looked at.
-  void reference_lost(double now, bool lost, double error);
+  void reference_lost(double now, bool lost, double error, double share);
   void cautious(double now, bool cautious);
   void stuck(double now, bool stuck);
   void sending(double now, bool works);

@@ -278,10 +278,10 @@ TEST(Companion, PlansAtTheStatedRateAndOneAtATime) {
   const std::size_t before = loop.planner.jobs.size();
   loop.run(2.0);
   EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - before), 20.0, 1.0);
-  loop.tracks = true;  // in every turn: plans at the largest rate, to within a turn
+  loop.tracks = true;  // in every turn
   const std::size_t sooner = loop.planner.jobs.size();
   loop.run(2.0);
-  EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - sooner), 2.0 / 0.06, 2.0);
+  EXPECT_NEAR(static_cast<double>(loop.planner.jobs.size() - sooner), 40.0, 2.0);
   loop.planner.takes = 0.3;
   const std::size_t slow = loop.planner.jobs.size();
   loop.run(3.0);
@@ -354,6 +354,36 @@ TEST(Companion, PlansFromTheVehicleWhereTrackingIsLostAndSaysItOnce) {
   EXPECT_EQ(loop.recorder.count("reference_lost"), 1);
 }
 
+// What it could not follow it is not asked for again, for a while.
+TEST(Companion, AVehicleThatLosesItsReferenceIsAskedForLess) {
+  config::Mission m = Loop::mission();
+  m.waypoints = {{900, 0, 2}};
+  m.geofence.max.x() = 1000;
+  m.time_limit = 300.0;
+  Loop loop(m);
+  loop.airborne().fly();
+  const auto asked = [&] { return loop.planner.jobs.back().request.vehicle; };
+  const planner::base::VehicleLimits all = asked();
+  double expected = 1.0;
+  for (int losses = 1; losses <= 5; ++losses) {
+    SCOPED_TRACE(losses);
+    loop.follows = false;
+    loop.link.telemetry.motion.value.position += Vec3(0, 1.5, 0);
+    loop.run(0.3);
+    loop.follows = true;
+    loop.run(0.3);
+    expected = std::max(0.25, 0.7 * expected);
+    EXPECT_NEAR(asked().cruise_speed / all.cruise_speed, expected, 0.03);
+    EXPECT_NEAR(asked().max_acceleration / all.max_acceleration, expected, 0.03);
+    EXPECT_EQ(loop.recorder.count("reference_lost"), losses);
+  }
+  loop.run(40.0);
+  EXPECT_NEAR(asked().cruise_speed / all.cruise_speed, 0.65, 0.03);
+  loop.run(40.0);
+  EXPECT_EQ(asked().cruise_speed, all.cruise_speed);
+  EXPECT_EQ(asked().max_acceleration, all.max_acceleration);
+}
+
 // The loop is woken by a track and by the plan that it leads to, between two turns.
 TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   Loop loop;
@@ -371,6 +401,40 @@ TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   loop.companion.step(woken + 0.005);
   EXPECT_EQ(loop.link.sent.size(), sent + 1);
   EXPECT_NEAR(loop.companion.summary().track_to_setpoint_ms.back(), 5.0, 1e-6);
+}
+
+// Messages every 50 ms; one is late, and the next is not made to wait for that.
+TEST(Companion, ATrackInTimeAfterALateOneDoesNotWait) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.tracks = false;
+  loop.planner.takes = 0.005;
+  loop.run(0.3);
+  const double begin = loop.now;
+  const std::size_t counted = loop.companion.summary().track_to_setpoint_ms.size();
+  for (const double came : {0.0, 0.05, 0.14, 0.15, 0.20}) {
+    loop.link.telemetry.motion.stamp = loop.link.telemetry.heartbeat_stamp = begin + came;
+    loop.source.messages.push_back({{1, begin + came, 0.0}, {}, 0});
+    for (const double later : {0.0, 0.006}) loop.companion.step(begin + came + later);
+  }
+  const std::vector<double>& ms = loop.companion.summary().track_to_setpoint_ms;
+  ASSERT_EQ(ms.size(), counted + 5);
+  for (std::size_t i = counted; i < ms.size(); ++i) EXPECT_NEAR(ms[i], 6.0, 1e-6) << i;
+}
+
+// What was there before the flight, and what was planned for already, waited for nothing.
+TEST(Companion, OnlyATrackThatAPlanBeganForIsTimed) {
+  Loop loop;
+  loop.airborne().fly();
+  loop.tracks = false;
+  loop.run(0.06);
+  EXPECT_EQ(loop.companion.summary().track_to_setpoint_ms.size(), loop.planner.jobs.size() - 1);
+  loop.run(0.04);
+  const std::size_t counted = loop.companion.summary().track_to_setpoint_ms.size();
+  const std::size_t jobs = loop.planner.jobs.size();
+  loop.run(0.4);
+  EXPECT_GE(loop.planner.jobs.size(), jobs + 3);
+  EXPECT_EQ(loop.companion.summary().track_to_setpoint_ms.size(), counted);
 }
 
 TEST(Companion, DoesNotFleeFromItsOwnTrack) {
