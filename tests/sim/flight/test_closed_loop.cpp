@@ -220,7 +220,7 @@ TEST(ClosedLoop, LeavingTheWorldIsNoticed) {
   scenario.target = {6, 0, 0.4};
   scenario.world = planner::base::Box{{-1, -1, 0.39}, {7, 1, 1.6}};
   // A vehicle that does not know well where it is, and the floor a centimetre below the target.
-  scenario.estimate.drift = 0.3;
+  scenario.estimate.drift = 0.6;
   scenario.estimate.drift_time = 2.0;
   const Flown flown = fly(scenario, quick_settings());
   EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kLeftWorld) << flown.result.flight.reason;
