@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of the README: a screenshot of the flight report, and the figure of the same flight.
+"""The documents' pictures: a screenshot of the flight report, the figure of the same flight, and PX4's hovers.
 
-check_pictures.py JINK               makes them with that program and compares them with docs/images
-check_pictures.py JINK --write DIR   makes them and writes them to DIR (tools/pictures.sh)
+check_pictures.py JINK DRAW               makes them with those programs and compares them with docs/images
+check_pictures.py JINK DRAW --write DIR   makes them and writes them to DIR (tools/pictures.sh)
 
 Exit 0: as committed; 1: one differs visibly, or is too large; 77: there is no browser here, the report was not looked at.
 """
@@ -76,25 +76,27 @@ def same(name, made):
 
 
 def main(arguments):
-    if len(arguments) not in (1, 3) or (len(arguments) == 3 and arguments[1] != "--write"):
+    writes = len(arguments) == 4 and arguments[2] == "--write"
+    if len(arguments) != 2 and not writes:
         print(__doc__)
         return 2
     with tempfile.TemporaryDirectory() as name:
         page, figure = fly(arguments[0], pathlib.Path(name))
-        pictures = {"flight.png": for_print(Image.open(figure))}
+        subprocess.run([arguments[1], name], check=True)
+        pictures = {"flight.png": for_print(Image.open(figure)), "px4.png": for_print(Image.open(f"{name}/px4.png"))}
         if browser.find():
             pictures["report.png"] = for_print(screenshot(page))
-    if len(arguments) == 3:
-        if len(pictures) < 2:
+    if writes:
+        if len(pictures) < 3:
             print("check_pictures: a screenshot needs a browser: tools/setup.sh test", file=sys.stderr)
             return 1
         for name, picture in pictures.items():
-            picture.save(pathlib.Path(arguments[2]) / name, optimize=True)
+            picture.save(pathlib.Path(arguments[3]) / name, optimize=True)
         return 0
     if not all([same(name, picture) for name, picture in pictures.items()]):
         print("the pictures are old: tools/pictures.sh makes them again; look at them before you commit them")
         return 1
-    if len(pictures) < 2:
+    if len(pictures) < 3:
         print("check_pictures: skipped report.png, there is no browser here")
         return 77
     return 0
