@@ -34,6 +34,7 @@ Panel wander(const std::string& whose, const Track& track) {
 /// For each distance the share of the samples, %, that are no farther from their setpoint.
 std::vector<double> shares(const std::vector<Vec3>& offsets, const std::vector<double>& distances) {
   std::vector<double> sorted;
+  sorted.reserve(offsets.size());
   for (const Vec3& offset : offsets) sorted.push_back(offset.head<2>().norm());
   std::sort(sorted.begin(), sorted.end());
   std::vector<double> shares;
@@ -52,10 +53,12 @@ Panel distribution(const std::string& of, const std::vector<Flown>& hovers, cons
   std::vector<double> distances;
   for (int i = 0; i <= 60; ++i) distances.push_back(0.025 * i);
   std::vector<std::vector<double>> all;
+  all.reserve(simulated.size());
   for (const Track& track : simulated) all.push_back(shares(offsets(track), distances));
   Series band{.label = "simulated: median, 5 to 95 %", .x = distances, .kind = Kind::band, .style = 2};
   for (std::size_t i = 0; i < distances.size(); ++i) {
     std::vector<double> at;
+    at.reserve(all.size());
     for (const std::vector<double>& one : all) at.push_back(one[i]);
     std::sort(at.begin(), at.end());
     const auto quantile = [&](double share) {

@@ -89,8 +89,8 @@ struct Track {
 struct Flown {
   Track track;
   std::vector<Setpoint> setpoints;
-  Vec3 velocity;  ///< true, at the beginning
-  double height;  ///< of the ground
+  Vec3 velocity = Vec3::Zero();  ///< true, at the beginning
+  double height = 0.0;           ///< of the ground
 };
 
 /// PX4 tells the velocity and the acceleration that its controller asks for in all; what was fed forward is that less

@@ -23,6 +23,7 @@ struct Figures {
 
 Figures figures(const std::vector<Vec3>& errors, bool horizontal) {
   std::vector<double> norms;
+  norms.reserve(errors.size());
   for (const Vec3& e : errors) norms.push_back(horizontal ? e.head<2>().norm() : std::abs(e.z()));
   const auto product = [&](std::size_t lag) {
     double sum = 0.0;
