@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -18,7 +19,6 @@
 
 #include "sim/vehicle/estimator.hpp"
 #include "sim/vehicle/vehicle_model.hpp"
-#include "tests/sim/vehicle/autopilot_flight.hpp"
 
 namespace jink::sim::vehicle::px4 {
 
@@ -48,7 +48,8 @@ inline Recording read_recording(const std::string& name) {
     sample.t = std::stod(field);
     std::getline(fields, kind, ',');
     for (double& value : sample.values) {
-      value = std::getline(fields, field, ',') && field.size() > 2 ? std::stod(field) : kNan;
+      value = std::getline(fields, field, ',') && field.size() > 2 ? std::stod(field)
+                                                                   : std::numeric_limits<double>::quiet_NaN();
     }
     recording[kind].push_back(sample);
   }
@@ -109,7 +110,7 @@ inline Flown flown(const std::string& name) {
   Flown flown;
   flown.height = ground;
   Vec3 integral = Vec3::Zero();
-  Vec3 before = Vec3::Constant(kNan);
+  Vec3 before = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   Vec3 rate = Vec3::Zero();
   for (double t = begin; t < setpoints.back().t; t += kPeriod) {
     const auto wanted = at(setpoints, t, false);

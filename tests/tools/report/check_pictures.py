@@ -87,7 +87,7 @@ def main(arguments):
         if browser.find():
             pictures["report.png"] = for_print(screenshot(page))
     if writes:
-        if len(pictures) < 3:
+        if "report.png" not in pictures:
             print("check_pictures: a screenshot needs a browser: tools/setup.sh test", file=sys.stderr)
             return 1
         for name, picture in pictures.items():
@@ -96,7 +96,7 @@ def main(arguments):
     if not all([same(name, picture) for name, picture in pictures.items()]):
         print("the pictures are old: tools/pictures.sh makes them again; look at them before you commit them")
         return 1
-    if len(pictures) < 3:
+    if "report.png" not in pictures:
         print("check_pictures: skipped report.png, there is no browser here")
         return 77
     return 0
