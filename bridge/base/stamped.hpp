@@ -25,6 +25,10 @@ struct Stamped {
   [[nodiscard]] bool heard() const { return stamp > kNever; }
   /// s; infinite where nothing was heard.
   [[nodiscard]] double age(double now) const { return now - stamp; }
+  /// s since it was heard; likewise.
+  [[nodiscard]] double silence(double now) const { return now - received; }
+  /// s that it was on its way.
+  [[nodiscard]] double delay() const { return heard() ? received - stamp : 0.0; }
 };
 
 /// Where something is and how it moves.

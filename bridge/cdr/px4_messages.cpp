@@ -159,7 +159,7 @@ void LocalPositionFilter::count_resets(const LocalPosition& message, double now)
 }
 
 void LocalPositionFilter::apply(vehicle::VehicleState& state, double now) const {
-  state.motion.stamp = valid_at_;
+  state.motion.stamp = state.motion.received = valid_at_;
   state.estimate_resets = resets_;
   state.estimate_shift = frames::enu_from_ned(shift_ned_);
   if (origin_) state.origin = origin_;

@@ -34,7 +34,7 @@ bool Intake::take_tracks(double now) {
     table_.ingest(message);
     any = true;
   }
-  if (any && state_.motion.age(now) <= settings_.companion.stale_state)
+  if (any && state_.motion.silence(now) <= settings_.companion.stale_state)
     table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
   return any;
 }

@@ -70,7 +70,7 @@ void MotionControl::take_off(double now, supervisor::Phase phase, const vehicle:
 // was lost, and the vehicle's position is known.
 void MotionControl::brake(double now, const vehicle::VehicleState& state) {
   if (stream_.braking()) return;
-  const bool known = state.motion.age(now) <= settings_.companion.stale_state;
+  const bool known = state.motion.silence(now) <= settings_.companion.stale_state;
   const bool says_nothing = !stream_.active() || stream_.plan(now).empty() || lost(state);
   if (!known || !says_nothing) {
     stream_.brake(now);
@@ -100,7 +100,7 @@ void MotionControl::send(double now, double dt, const vehicle::VehicleState& sta
   if (!due && !new_plan_) return;
   last_sent_ = now;
   new_plan_ = false;
-  const vehicle::Setpoint setpoint = stream_.setpoint(now, heading(dt, state, towards));
+  const vehicle::Setpoint setpoint = stream_.setpoint(now, heading(dt, state, towards), state.link_delay);
   const bool sent = link_.send(setpoint);
   reporter_.sending(now, sent);
   if (!sent) {
@@ -109,7 +109,7 @@ void MotionControl::send(double now, double dt, const vehicle::VehicleState& sta
   }
   unsent_since_.reset();
   reporter_.setpoint(now, setpoint);
-  const double lead = std::max(companion.setpoint_lead, companion.committed_acceleration_lead());
+  const double lead = std::max(companion.setpoint_lead, companion.committed_acceleration_lead()) + state.link_delay;
   if (unsent_track_ && now + lead >= unsent_track_->from) {
     const double at = clock_ != nullptr ? clock_->now() : now;
     reporter_.summary().track_to_setpoint_ms.push_back(1e3 * (at - unsent_track_->received));
@@ -130,7 +130,7 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
 }
 
 void MotionControl::observe(double now, const vehicle::VehicleState& state) {
-  if (!stream_.active() || state.motion.age(now) > settings_.companion.stale_state) return;
+  if (!stream_.active() || state.motion.silence(now) > settings_.companion.stale_state) return;
   stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity);
   const planner::base::TimedPoint reference = stream_.reference(state.motion.stamp);
   const Vec3 offset = state.motion.value.position - reference.position;

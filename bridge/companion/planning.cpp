@@ -111,7 +111,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
   PlanJob job;
   job.number = plans_;
   job.begun = now;
-  job.start = now + std::max(planner_.latency(), settings_.companion.commitment);
+  job.start = now + std::max(planner_.latency(), settings_.companion.commitment + state.link_delay);
   job.estimate_shift = intake.estimate_shift();
   job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);

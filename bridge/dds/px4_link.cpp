@@ -68,6 +68,7 @@ class DdsVehicleLink::Impl {
 
   vehicle::VehicleState state() {
     vehicle::VehicleState state = under_.state();
+    if (setpoint_writer_) state.link_delay = 0.0;  // another way than the one that was measured
     if (!reader_) return state;
     forget_local_position(state.health);
     const std::scoped_lock lock(mutex_);

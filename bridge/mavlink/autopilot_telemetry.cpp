@@ -78,9 +78,15 @@ bool AutopilotTelemetry::on(double now, const LocalPosition& message) {
   }
   position_boot_ms_ = message.boot_ms;
   ++counts_.positions;
-  state_.motion = {{message.position, message.velocity}, now, now};
+  state_.motion = {{message.position, message.velocity}, now - delay_.one_way(), now};
   resets_.on_position({message.boot_ms * 1e-3, message.position, message.velocity});
   return true;
+}
+
+void AutopilotTelemetry::on(double now, const Ping& message) {
+  delay_.answered(static_cast<double>(message.time_us) * 1e-6, now);
+  info_.round_trip_s = delay_.round_trip();
+  state_.link_delay = delay_.one_way();
 }
 
 void AutopilotTelemetry::on(const Attitude& message) {
@@ -137,7 +143,7 @@ void AutopilotTelemetry::on(const StatusText& message) {
 
 vehicle::VehicleState AutopilotTelemetry::state(double now) const {
   vehicle::VehicleState state = state_;
-  const bool fresh = state.motion.age(now) <= kPositionMaxAge_s;
+  const bool fresh = state.motion.silence(now) <= kPositionMaxAge_s;
   state.local_position_ok = fresh && estimator_ok_;
   state.health = sys_status_heard_ ? failed_health_ : "no SYS_STATUS yet";
   if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";

@@ -12,6 +12,7 @@
 
 #include "bridge/mavlink/messages.hpp"
 #include "bridge/vehicle/estimate_resets.hpp"
+#include "bridge/vehicle/link_delay.hpp"
 #include "bridge/vehicle/px4.hpp"
 #include "bridge/vehicle/status_text.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
@@ -38,7 +39,7 @@ struct LinkInfo {
   std::optional<std::uint32_t> estimator;        ///< ESTIMATOR_STATUS.flags
   std::optional<double> battery_percent;         ///< SYS_STATUS.battery_remaining
   bool rc_receiver = false;                      ///< SYS_STATUS: present and healthy
-  std::optional<double> round_trip_s;            ///< the shortest answer to PING; asked once a second
+  std::optional<double> round_trip_s;            ///< of PING, the shortest lately
   std::vector<std::uint32_t> other_systems;      ///< system ids of LinkCounts::other_autopilots
 };
 
@@ -63,6 +64,8 @@ class AutopilotTelemetry {
   bool on(double now, const Heartbeat& message);
   /// False where it is older than one that came before.
   bool on(double now, const LocalPosition& message);
+  /// An answer to our own PING.
+  void on(double now, const Ping& message);
   void on(const Attitude& message);
   void on(const Odometry& message);
   void on(const SysStatus& message);
@@ -79,7 +82,7 @@ class AutopilotTelemetry {
   [[nodiscard]] vehicle::VehicleState state(double now) const;
   /// `setpoints_sent`, `other_autopilots` and `dropped_adsb` are the link's.
   [[nodiscard]] const LinkCounts& counts() const { return counts_; }
-  /// `round_trip_s` and `other_systems` are the link's.
+  /// `other_systems` are the link's.
   [[nodiscard]] const LinkInfo& info() const { return info_; }
   /// Of the newest heartbeat; negative: none.
   [[nodiscard]] double heartbeat_stamp() const { return state_.heartbeat_stamp; }
@@ -97,6 +100,7 @@ class AutopilotTelemetry {
   LinkInfo info_;
   LinkCounts counts_;
   vehicle::EstimateResets resets_;
+  vehicle::LinkDelay delay_;
   std::optional<std::uint32_t> boot_ms_;  // newest of LOCAL_POSITION_NED and ATTITUDE
   std::optional<std::uint32_t> position_boot_ms_;
   bool sys_status_heard_ = false;

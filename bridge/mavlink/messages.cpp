@@ -155,7 +155,8 @@ bool read(const json& fields, AutopilotVersion& message) {
 }
 
 bool read(const json& fields, Ping& message) {
-  return read(fields, "time_usec", message.time_us) && read(fields, "target_system", message.target_system);
+  return read(fields, "time_usec", message.time_us) && read(fields, "target_system", message.target_system) &&
+         read(fields, "target_component", message.target_component);
 }
 
 bool read(const json& fields, ParamValue& message) {

@@ -82,6 +82,7 @@ struct AutopilotVersion {
 struct Ping {
   std::int64_t time_us = 0;
   std::uint32_t target_system = 0;
+  std::uint32_t target_component = 0;
 };
 struct ParamValue {
   std::string name;

@@ -43,6 +43,8 @@ struct StreamRate {
 /// `reboots`: the autopilot's time went back by more than kReboot_s; then origin, health and battery are unknown anew.
 /// LOCAL_POSITION_NED and ATTITUDE are asked for at kTelemetryHz, ODOMETRY at kOdometryHz, and again after each
 /// heartbeat interval in which they came slower. A position that is older than one that came before is left out.
+/// PING is sent every LinkDelay::kPeriod: `motion` is stamped as long before it came as its answers tell, which is
+/// `link_delay` too.
 ///
 /// A silence of any length ends by itself: nothing has to be opened again. Over UDP, though, MAVSDK sends nothing to a
 /// peer that was silent for 10 s, until it speaks.

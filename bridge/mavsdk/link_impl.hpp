@@ -103,6 +103,7 @@ class MavsdkLink::Impl {
   void watch_other_systems(const std::stop_token& stop);
   bool transmit(const char* name, const nlohmann::json& fields) const;
   bool transmit(const vehicle::px4::CommandLong& command) const;
+  void ping(double now);
   void request_streams(const std::array<bool, kStreams>& slow) const;
 
   // On MAVSDK's callback thread, `now` by the companion's clock.
@@ -143,8 +144,7 @@ class MavsdkLink::Impl {
   std::deque<mavlink::AdsbReport> adsb_;
   std::uint64_t dropped_adsb_ = 0;
   std::map<std::string, vehicle::px4::Parameter> parameters_;  // answers to the request under way
-  std::int64_t ping_sent_us_ = 0;
-  std::optional<double> round_trip_s_;
+  double ping_due_ = 0.0;
   vehicle::CommandTracker commands_;
   std::condition_variable_any parameter_came_;
 

@@ -81,7 +81,6 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
   std::array<bool, kStreams> slow{};
   bool want_origin = false;
   bool want_version = false;
-  const auto ping_us = static_cast<std::int64_t>(now * 1e6);
   {
     const std::scoped_lock lock(mutex_);
     const double before = telemetry_.heartbeat_stamp();
@@ -95,15 +94,23 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     at_heartbeat_ = heard_;
     want_origin = !telemetry_.origin_known();
     want_version = !telemetry_.info().version;
-    ping_sent_us_ = ping_us;
   }
   if (!ready_) return;
   request_streams(slow);
   if (want_origin) (void)transmit(vehicle::px4::request_message(kMessageOrigin));
   if (want_version) (void)transmit(vehicle::px4::request_message(kMessageVersion));
-  // Not by TIMESYNC: PX4 leaves the target of its answers to chance, and MAVSDK keeps what is meant for others to
-  // itself.
-  (void)transmit("PING", {{"time_usec", ping_us}, {"seq", 0}, {"target_system", 0}, {"target_component", 0}});
+  ping(now);
+}
+
+// Not by TIMESYNC: PX4 leaves the target of its answers to chance, and MAVSDK keeps what is meant for others to itself.
+void MavsdkLink::Impl::ping(double now) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (now < ping_due_) return;
+    ping_due_ = now + vehicle::LinkDelay::kPeriod;
+  }
+  const auto time_us = static_cast<std::int64_t>(now * 1e6);
+  (void)transmit("PING", {{"time_usec", time_us}, {"seq", 0}, {"target_system", 0}, {"target_component", 0}});
 }
 
 void MavsdkLink::Impl::on_other_heartbeat(const Sender& sender, const mavlink::Heartbeat& message) {
@@ -116,8 +123,11 @@ void MavsdkLink::Impl::on_other_heartbeat(const Sender& sender, const mavlink::H
 }
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::LocalPosition& message) {
-  const std::scoped_lock lock(mutex_);
-  if (telemetry_.on(now, message)) tally(kLocalPosition, now);
+  {
+    const std::scoped_lock lock(mutex_);
+    if (telemetry_.on(now, message)) tally(kLocalPosition, now);
+  }
+  if (ready_) ping(now);
 }
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Attitude& message) {
@@ -142,9 +152,7 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::C
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Ping& message) {
   const std::scoped_lock lock(mutex_);
-  if (message.target_system == 0 || message.time_us != ping_sent_us_) return;
-  const double round_trip_s = std::max(0.0, now - static_cast<double>(message.time_us) * 1e-6);
-  round_trip_s_ = std::min(round_trip_s_.value_or(round_trip_s), round_trip_s);
+  if (message.target_system == own_system_id_ && message.target_component == kOwnComponent) telemetry_.on(now, message);
 }
 
 void MavsdkLink::Impl::on(double /*now*/, const Sender& /*sender*/, const mavlink::ParamValue& message) {
@@ -181,7 +189,6 @@ vehicle::VehicleState MavsdkLink::Impl::state() const {
 mavlink::LinkInfo MavsdkLink::Impl::info() const {
   const std::scoped_lock lock(mutex_);
   mavlink::LinkInfo info = telemetry_.info();
-  info.round_trip_s = round_trip_s_;
   info.other_systems.assign(other_autopilots_.begin(), other_autopilots_.end());
   return info;
 }

@@ -126,9 +126,9 @@ planner::base::TimedPoint SetpointStream::reference(double t) const {
   return planner::base::sample(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
 }
 
-vehicle::Setpoint SetpointStream::setpoint(double now, double yaw) const {
-  const planner::base::TimedPoint point = reference(now + settings_.lead);
-  const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead);
+vehicle::Setpoint SetpointStream::setpoint(double now, double yaw, double delay) const {
+  const planner::base::TimedPoint point = reference(now + settings_.lead + delay);
+  const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead + delay);
   const double taken_off = 1.0 + damping_;
   const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
   return {point.position, point.velocity + velocity_error_.value(), acceleration + drag_ * later.velocity, yaw};

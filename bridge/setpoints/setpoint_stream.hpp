@@ -44,7 +44,8 @@ class SetpointStream {
   [[nodiscard]] planner::base::TimedPoint reference(double t) const;
   /// The setpoint to send at `now`, heading `yaw`. Its velocity is by how much the estimate of the velocity is off
   /// (VelocityError), so that the vehicle's own is the reference's.
-  [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw) const;
+  /// `delay`: s that the setpoint is on its way, by which it is led too.
+  [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw, double delay = 0.0) const;
 
   /// Takes in where the vehicle is, measured at `position` with `velocity` at time t. Learns drag and damping from it,
   /// but not at the largest speed, at which no thrust makes good what is late.

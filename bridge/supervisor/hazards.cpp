@@ -9,6 +9,7 @@ namespace {
 // s: a link that loses every fifth packet loses three heartbeats in a row twice in five minutes.
 constexpr double kHeartbeatLost = 5.0;
 constexpr double kUnsent = 0.2;            // s
+constexpr double kLatest = 0.5;            // s, that a position is on its way: at 4 m/s it is 2 m behind
 constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each second without one
 
 using S = Situation;
@@ -18,8 +19,10 @@ constexpr auto kHold = Hazard::EndsIn::kHold;
 constexpr Hazard kHazards[] = {
     {"the battery is critical", [](const S& s) { return s.state.battery == vehicle::BatteryState::kCritical; },
      Hazard::Reaction::kStop, Hazard::EndsIn::kLand},
-    {"the vehicle's position is stale", [](const S& s) { return s.state.motion.age(s.now) > s.settings.stale_state; },
-     kBrake, kHold},
+    {"the vehicle's position is stale",
+     [](const S& s) { return s.state.motion.silence(s.now) > s.settings.stale_state; }, kBrake, kHold},
+    {"the vehicle's position comes too late", [](const S& s) { return s.state.motion.delay() > kLatest; }, kBrake,
+     kHold},
     {"the autopilot's heartbeat is missing",
      [](const S& s) { return s.now - s.state.heartbeat_stamp > kHeartbeatLost; }, kBrake, kHold},
     {"the autopilot's failsafe flies", [](const S& s) { return s.failsafe; }, kBrake, kHold, /*names_mode=*/true},

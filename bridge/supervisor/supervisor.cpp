@@ -74,7 +74,7 @@ MissingPeer Supervisor::find_missing(const Input& in) {
   const bool autopilot = in.now - state.heartbeat_stamp < kHeartbeatTimeout;
   const bool tracks = !mission_.tracks.required ||
                       (in.flight.newest_tracks && in.now - *in.flight.newest_tracks < mission_.tracks.timeout_s);
-  const bool position = state.motion.age(in.now) < settings_.stale_state;
+  const bool position = state.motion.silence(in.now) < settings_.stale_state;
   const bool ready = position && state.local_position_ok && state.landed_state_known && (state.armed || state.armable);
   waiting_for_.clear();
   if (!autopilot) {
@@ -201,7 +201,7 @@ Decision Supervisor::step(Climbing& phase, const Input& in) {
 Decision Supervisor::step(Flying& phase, const Input& in) {
   // Where the vehicle was is no proof of where it is.
   const bool at_target =
-      in.flight.at_target && in.state.motion.age(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
+      in.flight.at_target && in.state.motion.silence(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
   if (at_target && !phase.arrived) phase.arrived = in.now;
   if (at_target && !in.flight.leaves_target) {
     hazard_.clear();

@@ -57,6 +57,9 @@ struct VehicleState {
   BatteryState battery = BatteryState::kUnknown;
   std::optional<frames::Geodetic> origin;  ///< of the local frame; none: not told yet
   std::uint32_t system_id = 0;             ///< MAVLink system of the autopilot; 0: not found yet
+  /// s, that a setpoint is on its way to the autopilot, as far as the link can tell; `motion`'s stamp has the way back
+  /// taken off.
+  double link_delay = 0.0;
   std::uint32_t reboots = 0;  ///< times that the autopilot began anew; its local frame may be another since
 };
 

@@ -68,6 +68,7 @@ VirtualLink::VirtualLink(vehicle::Autopilot& autopilot, std::uint64_t seed)
       down_(seed, faults::link_stream(autopilot.options().system_id, 1)) {}
 
 void VirtualLink::impair(const faults::LinkImpairment& impairment) {
+  link_delay_ = 0.5 * (impairment.up.delay + impairment.down.delay);
   up_.set(impairment.up);
   down_.set(impairment.down);
 }
@@ -151,10 +152,12 @@ vehicle::Result VirtualLink::act(bridge::vehicle::Command command) {
   return vehicle::Result::kUnsupported;
 }
 
-/// Stamps are those of its arrival, as a receiver has no others.
+/// Stamps are those of its arrival, less half the round trip, as a receiver has no others.
 void VirtualLink::deliver(const bridge::vehicle::VehicleState& state) {
   state_ = state;
-  state_.heartbeat_stamp = state_.motion.stamp = state_.motion.received = now_;
+  state_.heartbeat_stamp = state_.motion.received = now_;
+  state_.link_delay = link_delay_;
+  state_.motion.stamp = now_ - state_.link_delay;
 }
 
 void VirtualLink::deliver(const AnswerPacket& answer) {

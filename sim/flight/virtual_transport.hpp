@@ -74,6 +74,7 @@ class VirtualLink final : public bridge::vehicle::VehicleLink {
   double now_ = 0.0;
   faults::ImpairedChannel<UpPacket> up_;
   faults::ImpairedChannel<DownPacket> down_;
+  double link_delay_ = 0.0;              ///< s, one way, on average
   bridge::vehicle::VehicleState state_;  ///< as it has arrived
   std::uint32_t resets_ = 0;
   Vec3 shift_ = Vec3::Zero();

@@ -77,8 +77,8 @@ void FlightProgress::find_stale(double t, const bridge::vehicle::VehicleState& s
   } else if (!state.motion.heard()) {
     status_.stale.emplace_back("no position yet");
   }
-  if (state.motion.heard() && state.motion.age(t) > stale_state_)
-    status_.stale.push_back(old("position", state.motion.age(t)));
+  if (state.motion.heard() && state.motion.silence(t) > stale_state_)
+    status_.stale.push_back(old("position", state.motion.silence(t)));
   if (!last_tracks_) {
     if (mission_.tracks.required) status_.stale.emplace_back("no tracks yet");
   } else if (t - *last_tracks_ > mission_.tracks.timeout_s) {

@@ -34,7 +34,7 @@ struct Loop {
   bool turn() {
     vehicle::VehicleState& state = link.telemetry;
     if (heartbeats) state.heartbeat_stamp = now;
-    if (positions) state.motion.stamp = now;
+    if (positions) state.motion.stamp = state.motion.received = now;
     if (tracks) source.messages.push_back({{1, now, 0.0}, seen, 0});
     const bool on = companion.step(now);
     if (obeys) obey();

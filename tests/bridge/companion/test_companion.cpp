@@ -413,7 +413,8 @@ TEST(Companion, ATrackInTimeAfterALateOneDoesNotWait) {
   const double begin = loop.now;
   const std::size_t counted = loop.companion.summary().track_to_setpoint_ms.size();
   for (const double came : {0.0, 0.05, 0.14, 0.15, 0.20}) {
-    loop.link.telemetry.motion.stamp = loop.link.telemetry.heartbeat_stamp = begin + came;
+    loop.link.telemetry.motion.stamp = loop.link.telemetry.motion.received = loop.link.telemetry.heartbeat_stamp =
+        begin + came;
     loop.source.messages.push_back({{1, begin + came, 0.0}, {}, 0});
     for (const double later : {0.0, 0.006}) loop.companion.step(begin + came + later);
   }

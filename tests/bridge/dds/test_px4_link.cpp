@@ -320,7 +320,7 @@ TEST_F(Px4Dds, TakesPositionsFromPx4sWritersAndTheRestFromTheLinkUnderneath) {
   under_.underlying.armed = true;
   under_.underlying.heartbeat_stamp = 4.0;
   under_.underlying.motion.value.position = {100, 100, 100};
-  under_.underlying.motion.stamp = 4.5;
+  under_.underlying.motion.stamp = under_.underlying.motion.received = 4.5;
   under_.underlying.health = "gyroscope, local position";
   auto dds = link({.state = true, .setpoints = false, .name_space = "px4_1"});
   EXPECT_FALSE(dds.state().motion.heard());

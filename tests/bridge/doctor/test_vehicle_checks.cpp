@@ -32,7 +32,7 @@ LinkFindings healthy() {
   LinkFindings h;
   h.autopilot = true;
   h.state.armable = h.state.local_position_ok = true;
-  h.state.motion.stamp = 1.0;
+  h.state.motion.stamp = h.state.motion.received = 1.0;
   h.state.mode = FlightMode::kHold;
   h.state.battery = BatteryState::kOk;
   h.state.origin = {47.4, 8.5, 488.0};
@@ -160,7 +160,7 @@ TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
   LinkFindings h = healthy();
   for (std::size_t i = 1; i < h.rates.size(); ++i) h.rates[i].count = 0;
   EXPECT_EQ(bad_ones(inspect_link(m, h)), "");
-  h.state.motion.stamp = base::kNever;
+  h.state.motion.stamp = h.state.motion.received = base::kNever;
   EXPECT_EQ(find(inspect_mission(m, h), "local position").level, Level::kWarning);
 }
 
@@ -197,7 +197,8 @@ TEST(Doctor, KnowsWhatTheParametersDo) {
 
 TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
   const std::vector<Case> of_vehicle{
-      {"local position", Level::kFault, "never heard", [](LinkFindings& h) { h.state.motion.stamp = base::kNever; }},
+      {"local position", Level::kFault, "never heard",
+       [](LinkFindings& h) { h.state.motion.stamp = h.state.motion.received = base::kNever; }},
       {"local position", Level::kFault, "not valid", [](LinkFindings& h) { h.state.local_position_ok = false; }},
       {"local position", Level::kWarning, "5.0 m above",
        [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},

@@ -127,6 +127,17 @@ TEST_F(MavsdkFaultTest, OriginAndVersionAreAskedForUntilTheyCome) {
   EXPECT_EQ(link_->state().system_id, 1U);
 }
 
+// By the round trip; what is slower one way than the other cannot be told.
+TEST_F(MavsdkFaultTest, WhatComesLateIsStampedWithWhenItWasTrue) {
+  fly({"--delay", "0.2"});
+  ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.link_delay > 0.0; }));
+  EXPECT_TRUE(state_becomes([](const VehicleState& s) { return s.motion.delay() == s.link_delay; }));
+  const VehicleState s = link_->state();
+  EXPECT_GE(s.link_delay, 0.1);
+  EXPECT_LE(s.motion.stamp, clock_.now() - 0.1);
+  EXPECT_NEAR(*link_->info().round_trip_s, 2.0 * s.link_delay, 0.2);
+}
+
 TEST_F(MavsdkFaultTest, ParametersAreReadByName) {
   fly({"--deaf", "1"});
   const std::vector<std::string> names{"COM_OBL_RC_ACT", "NO_SUCH", "COM_OF_LOSS_T", "COM_NEGATIVE", "not a name\xff"};

@@ -34,7 +34,7 @@ struct Flight {
   /// One turn; what was frozen keeps its stamp.
   supervisor::Decision turn() {
     if (heartbeats) state.heartbeat_stamp = now;
-    if (positions) state.motion.stamp = now;
+    if (positions) state.motion.stamp = state.motion.received = now;
     if (tracks) context.newest_tracks = now;
     if (plans) context.newest_plan = now;
     const supervisor::Decision decision = supervisor.update(now, state, context);

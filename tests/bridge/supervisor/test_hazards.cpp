@@ -16,7 +16,7 @@ constexpr double kNow = 20.0;
 /// A flight in which nothing is wrong.
 struct Calm {
   Calm() {
-    state.heartbeat_stamp = state.motion.stamp = kNow;
+    state.heartbeat_stamp = state.motion.stamp = state.motion.received = kNow;
     state.local_position_ok = true;
     flight.newest_tracks = flight.newest_plan = kNow;
   }
@@ -41,7 +41,9 @@ struct Case {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all{
       {"the battery is critical", [](Calm& c) { c.state.battery = vehicle::BatteryState::kCritical; }},
-      {"the vehicle's position is stale", [](Calm& c) { c.state.motion.stamp = kNow - 0.21; }},
+      {"the vehicle's position is stale",
+       [](Calm& c) { c.state.motion.stamp = c.state.motion.received = kNow - 0.21; }},
+      {"the vehicle's position comes too late", [](Calm& c) { c.state.motion.stamp = kNow - 0.51; }},
       {"the autopilot's heartbeat is missing", [](Calm& c) { c.state.heartbeat_stamp = kNow - 5.1; }},
       {"the autopilot's failsafe flies", [](Calm& c) { c.failsafe = true; }},
       {"the autopilot has lost its position", [](Calm& c) { c.state.local_position_ok = false; }},

@@ -33,8 +33,9 @@ const std::vector<Missing>& missing_things() {
       {"old tracks", [](Flight& f) { f.tracks = false, f.context.newest_tracks = f.now - 1.1; }, "obstacle tracks",
        30.0, MissingPeer::kTracks},
       {"position", [](Flight& f) { f.positions = false; }, "local position", 60.0, MissingPeer::kNone},
-      {"old position", [](Flight& f) { f.positions = false, f.state.motion.stamp = f.now - 0.6; }, "local position",
-       60.0, MissingPeer::kNone},
+      {"old position",
+       [](Flight& f) { f.positions = false, f.state.motion.stamp = f.state.motion.received = f.now - 0.6; },
+       "local position", 60.0, MissingPeer::kNone},
       {"estimator", [](Flight& f) { f.state.local_position_ok = false; }, "local position", 60.0, MissingPeer::kNone},
       {"health", [](Flight& f) { f.state.armable = false, f.state.health = "gyro, compass"; }, "gyro, compass", 60.0,
        MissingPeer::kNone}};
@@ -225,7 +226,7 @@ TEST(Supervisor, NeverArmsWhenTheAutopilotOrTheTracksAreNoLongerReady) {
     flight.engage().turn();
     flight.state.mode = vehicle::FlightMode::kOffboard;
     missing.take_away(flight);
-    if (!flight.positions) flight.state.motion.stamp = flight.now - 0.6;
+    if (!flight.positions) flight.state.motion.stamp = flight.state.motion.received = flight.now - 0.6;
     if (!flight.tracks) flight.context.newest_tracks = flight.now - 1.1;
     flight.run(9.0);
     EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);

@@ -26,7 +26,7 @@ class Link final : public vehicle::VehicleLink {
   vehicle::VehicleState state() override {
     const sim::vehicle::Motion& motion = autopilot_.true_motion();
     vehicle::VehicleState state;
-    state.heartbeat_stamp = state.motion.stamp = autopilot_.time();
+    state.heartbeat_stamp = state.motion.stamp = state.motion.received = autopilot_.time();
     state.armed = autopilot_.armed();
     state.mode = autopilot_.mode() == sim::vehicle::FlightMode::kOffboard ? vehicle::FlightMode::kOffboard
                                                                           : vehicle::FlightMode::kHold;

@@ -55,7 +55,7 @@ IntentMessage message(double received, double age, const Intent& said, std::uint
 
 vehicle::VehicleState own(double t = 10.0) {
   vehicle::VehicleState state;
-  state.motion.stamp = t;
+  state.motion.stamp = state.motion.received = t;
   state.motion.value.position = {1, 2, 3};
   state.origin = kHere;
   state.system_id = 1;

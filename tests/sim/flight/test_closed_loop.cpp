@@ -314,6 +314,22 @@ TEST(ClosedLoop, FaultsAreTheSameToTheBitAtAnyThreadCountAndAnotherSeedIsAnother
   EXPECT_NE(fly(scenario, settings, 8, 2).hash.value, one.hash.value);
 }
 
+/// With PX4's estimate, and what is said takes 0.2 s each way: that is not taken for a lag of the vehicle's own.
+TEST(ClosedLoop, FliesAmongMoversThroughASlowLink) {
+  config::Scenario scenario = straight();
+  scenario.target.x() = 9.0;
+  scenario.estimate.px4 = true;
+  scenario.obstacles = {ball(0.4, {4, -4, 1.5}, {0, 1.6, 0}), ball(0.5, {6, 1.4, 1.5}),
+                        ball(0.4, {3, 3, 2}, {0.5, 0, 0})};
+  scenario.faults = {fault(config::FaultKind::kDelay, 0)};
+  scenario.faults.front().seconds = 0.2;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Flown flown = fly(scenario, quick_settings(), seed);
+    EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kReached)
+        << seed << ": " << flown.result.flight.reason;
+  }
+}
+
 TEST(ClosedLoop, EachFaultsBeginningAndEndIsAnEvent) {
   config::Scenario scenario = straight();
   scenario.faults = {fault(config::FaultKind::kIdSwap, 0.5, 0.5)};

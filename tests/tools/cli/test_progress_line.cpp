@@ -53,7 +53,7 @@ class LiveFlightTest : public ::testing::Test {
   void at(double t, const Vec3& position, double age = 0.0) {
     bridge::vehicle::VehicleState state;
     state.heartbeat_stamp = t - age;
-    state.motion.stamp = t - age;
+    state.motion.stamp = state.motion.received = t - age;
     state.mode = bridge::vehicle::FlightMode::kOffboard;
     state.motion.value.position = position;
     state.motion.value.velocity = {3, 0, 0};
