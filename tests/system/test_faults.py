@@ -35,8 +35,9 @@ SCENARIO = {
         {"radius": 0.5, "position": [6, 1.4, 1.5]},                           # stands beside it
         {"radius": 0.4, "motion": {"type": "sine", "center": [3, 3, 2], "amplitude": [1, 0, 0], "frequency_hz": [0.3, 0, 0],
                                    "phase": [0, 0, 0]}}]}
-# What crosses does so beyond where a vehicle coasts to that jink does not steer meanwhile.
-CROSSES_BEYOND = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [7, -4, 1.5]}, *SCENARIO["obstacles"][1:]]}
+# Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile.
+UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [7, -4, 1.5]},
+                           {**SCENARIO["obstacles"][1], "position": [6, 2.4, 1.5]}, SCENARIO["obstacles"][2]]}
 
 
 class Flight:
@@ -217,7 +218,7 @@ CASES = [
     Case("refuses_offboard", [at(0, "refuse_offboard")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("no_position_on_dds", status=1, reason="local position", events=("waiting",), end="ground", mission={"state": "dds"}),
     Case("pilot_takes_over", [at(1.5, "pilot_mode", mode="position")], 1, "the mode was changed to position", end="hold",
-         linger=2.0, after=stream_stays_stopped, scenario=CROSSES_BEYOND),
+         linger=2.0, after=stream_stays_stopped, scenario=UNSTEERED),
     Case("gps_loss", [at(1.5, "gps_loss")], 1, "lost its GPS", hazards=("lost its GPS",), end="ground", linger=12.0),
     Case("estimate_jump", [at(1.5, "estimate_jump", by=[0, -3, 0])], events=("estimate_reset",), after=no_lurch,
          scenario={"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}),
@@ -229,8 +230,8 @@ CASES = [
     Case("process_stalls_4s", status=1, reason="did not run for 4", during=stalled_process(4.0), hazards=("did not run",),
          end="hold", scenario={"start": [0, 0, 4], "target": [9, 0, 4]},
          mission={"waypoints": [[9, 0, 4]], "takeoff_height": 4.0}),
-    Case("killed_and_restarted_at_once", during=killed_and_started_again(0.0), hazards=None),
-    Case("killed_and_restarted_2s_later", during=killed_and_started_again(2.0), hazards=None, scenario=CROSSES_BEYOND),
+    Case("killed_and_restarted_at_once", during=killed_and_started_again(0.0), hazards=None, scenario=UNSTEERED),
+    Case("killed_and_restarted_2s_later", during=killed_and_started_again(2.0), hazards=None, scenario=UNSTEERED),
 ]
 
 
