@@ -14,8 +14,8 @@ namespace jink::bridge::vehicle {
 /// thread-safe.
 class LinkDelay {
  public:
-  static constexpr double kPeriod = 0.2;         ///< s, at which to ask
-  static constexpr std::size_t kKept = 10;       ///< answers
+  static constexpr double kPeriod = 0.2;            ///< s, at which to ask
+  static constexpr std::size_t kKept = 10;          ///< answers
   static constexpr double kLongestRoundTrip = 2.0;  ///< s; an answer to nothing that was asked lately is none
 
   /// What was sent at `sent` was answered at `now`.
