@@ -5,17 +5,16 @@ namespace jink::bridge::supervisor {
 namespace {
 
 constexpr double kAskAgain = 1.5;  // s; a confirming heartbeat takes up to one
+constexpr double kFresh = 1.5;     // s, of a heartbeat to ask on: PX4 sends one a second
 constexpr int kMostTries = 5;
 
 }  // namespace
 
 std::optional<vehicle::Command> CommandRequest::ask(vehicle::Command command, double now,
                                                     const vehicle::VehicleState& state) {
-  if (!asked_ || asked_->command != command) {
-    asked_ = Asked{command, now, 1, {}};
-    return command;
-  }
-  if (now - asked_->at < kAskAgain || state.heartbeat_stamp <= asked_->at) return std::nullopt;
+  if (!asked_ || asked_->command != command) asked_ = Asked{command, now, 0, {}};
+  const bool due = asked_->tries == 0 || (now - asked_->at >= kAskAgain && state.heartbeat_stamp > asked_->at);
+  if (!due || now - state.heartbeat_stamp > kFresh) return std::nullopt;
   asked_->at = now;
   ++asked_->tries;
   return command;

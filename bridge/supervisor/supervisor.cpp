@@ -54,7 +54,7 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason) {
     finish(std::move(ending));
   } else {
     const CommandRequest* request = request_of(phase_);
-    if (request != nullptr && request->command()) ending.unsettled_until = request->asked_at() + kSettling;
+    if (request != nullptr && request->asked()) ending.unsettled_until = request->asked_at() + kSettling;
     phase_ = Stopping{now, std::move(ending)};
   }
 }

@@ -93,6 +93,7 @@ TEST(CommandRequest, AsksAgainOnNewHeartbeatsOnlyAndNotForEver) {
   CommandRequest request;
   vehicle::VehicleState state;
   double now = 10.0;
+  state.heartbeat_stamp = now;
   EXPECT_FALSE(request.exhausted(now, state));
   EXPECT_EQ(request.ask(vehicle::Command::kHold, now, state), vehicle::Command::kHold);
   EXPECT_FALSE(request.ask(vehicle::Command::kHold, now + 2.0, state));  // no heartbeat since
@@ -108,14 +109,29 @@ TEST(CommandRequest, AsksAgainOnNewHeartbeatsOnlyAndNotForEver) {
   EXPECT_FALSE(request.exhausted(now, state));
 }
 
+TEST(CommandRequest, OnAnOldHeartbeatNothingIsAsked) {
+  CommandRequest request;
+  vehicle::VehicleState state;
+  state.heartbeat_stamp = 10.0;
+  EXPECT_FALSE(request.ask(vehicle::Command::kLand, 14.9, state));
+  EXPECT_FALSE(request.asked());
+  EXPECT_FALSE(request.exhausted(22.0, state));
+  EXPECT_TRUE(request.exhausted(22.5, state));  // nor will be
+  state.heartbeat_stamp = 22.6;
+  EXPECT_EQ(request.ask(vehicle::Command::kLand, 22.7, state), vehicle::Command::kLand);
+  EXPECT_TRUE(request.asked());
+}
+
 TEST(CommandRequest, KeepsTheRefusalOfThisCommand) {
   CommandRequest request;
+  vehicle::VehicleState state;
+  state.heartbeat_stamp = 1.0;
   request.answer({vehicle::Command::kHold, false, "denied"});
   EXPECT_EQ(request.refusal(), "");
-  request.ask(vehicle::Command::kHold, 1.0, {});
+  request.ask(vehicle::Command::kHold, 1.0, state);
   request.answer({vehicle::Command::kHold, false, "denied"});
   EXPECT_EQ(request.refusal(), "hold refused: denied");
-  request.ask(vehicle::Command::kLand, 1.1, {});
+  request.ask(vehicle::Command::kLand, 1.1, state);
   EXPECT_EQ(request.refusal(), "");
 }
 

@@ -118,9 +118,17 @@ TEST(Supervisor, AHazardThatLastsEndsInHoldWithItsReason) {
       climbing ? flight.climb() : flight.fly();
       flight.state.in_air = true;
       hazard.begin(flight);
-      for (const double end = flight.now + hazard.age + 4.0;
-           flight.asked(vehicle::Command::kHold) == 0 && flight.now < end + 5.0;) {
-        ASSERT_NE(flight.turn().motion, Motion::kNone);
+      const auto brakes_until_asked = [&] {
+        for (const double end = flight.now + hazard.age + 9.0;
+             flight.asked(vehicle::Command::kHold) == 0 && flight.now < end;) {
+          ASSERT_NE(flight.turn().motion, Motion::kNone);
+        }
+      };
+      brakes_until_asked();
+      if (!flight.heartbeats) {  // on an old one nothing is asked for: the vehicle may be a pilot's by now
+        EXPECT_EQ(flight.asked(vehicle::Command::kHold), 0);
+        flight.heartbeats = true;
+        brakes_until_asked();
       }
       ASSERT_EQ(flight.asked(vehicle::Command::kHold), 1);
       flight.heartbeats = true;
