@@ -228,8 +228,9 @@ CASES = [
     Case("estimate_jump", [at(1.5, "estimate_jump", by=[0, -3, 0])], events=("estimate_reset",), after=no_lurch,
          scenario={"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}),
     Case("battery_low", [at(1.0, "low_battery", remaining=0.12)], events=("battery",)),
-    Case("battery_critical", [at(1.5, "low_battery", remaining=0.06)], 1, "battery is critical", ("battery",), end="ground"),
-    Case("autopilot_reboots", [at(1.5, "reboot")], 1, "began anew", linger=3.0, hazards=None),
+    Case("battery_critical", [at(1.5, "low_battery", remaining=0.06)], 1, "battery is critical", ("battery",), end="ground",
+         scenario=UNSTEERED),
+    Case("autopilot_reboots", [at(1.5, "reboot")], 1, "began anew", linger=3.0, hazards=None, scenario=UNSTEERED),
     Case("process_stalls_0.4s", during=stalled_process(0.4), events=("stalled",), hazards=("did not run",)),
     # High up: meanwhile the autopilot's own failsafe sinks at 0.7 m/s.
     Case("process_stalls_4s", status=1, reason="did not run for 4", during=stalled_process(4.0), hazards=("did not run",),
