@@ -24,7 +24,7 @@ struct CompanionSettings {
   /// What counts of acceleration_lead. Beyond the commitment a plan may be replaced before it is flown: the vehicle
   /// would accelerate for motions that never come about.
   [[nodiscard]] double committed_acceleration_lead() const { return std::min(acceleration_lead, commitment); }
-  double stale_state = 0.2;   ///< age of the vehicle's position at which to brake
+  double stale_state = 0.2;   ///< without a position of the vehicle, at which to brake
   double stale_plan = 0.3;    ///< age of the newest plan at which to brake
   double margin_limit = 0.8;  ///< the most that the tracking error measured in flight may make of horizon.margin
 };

@@ -15,7 +15,7 @@ namespace jink::bridge::supervisor {
 struct SupervisorSettings {
   double peer_timeout = 30.0;    ///< for the autopilot's first words and the first tracks
   double health_timeout = 60.0;  ///< from then on, for it to become armable
-  double stale_state = 0.2;      ///< age of the position at which to brake
+  double stale_state = 0.2;      ///< without a position, at which to brake
   double stale_plan = 0.3;       ///< age of the newest plan at which to brake
   double give_up = 3.0;          ///< braking for so long at a stretch, or twice that in pieces, ends the flight in HOLD
 };
