@@ -81,6 +81,8 @@ Check inspect_rate(const mavsdk::StreamRate& rate, std::size_t index) {
                             : "check the streams of this link on the autopilot";
     if (std::string_view(rate.message) == "ODOMETRY") {
       check.remedy = "without it resets of the estimate show only as jumps of more than 1 m: stream ODOMETRY (331)";
+    } else if (std::string_view(rate.message) == "CURRENT_MODE") {
+      check.remedy = "without it a failsafe is told from a pilot by HEARTBEAT alone: stream CURRENT_MODE (436)";
     }
     return check;
   }
@@ -201,7 +203,8 @@ std::vector<Check> inspect_link(const config::Mission& mission, const LinkFindin
   inspect_identity(mission, heard, checks);
   inspect_traffic(mission, heard, checks);
   inspect_vehicle(heard, checks);
-  for (Check& check : inspect_parameters(heard.parameters, heard.info.rc_receiver)) checks.push_back(std::move(check));
+  for (Check& check : inspect_parameters(heard.parameters, heard.state.remote_control))
+    checks.push_back(std::move(check));
   return checks;
 }
 

@@ -64,10 +64,25 @@ bool AutopilotTelemetry::on(double now, const Heartbeat& message) {
   ++counts_.heartbeats;
   state_.heartbeat_stamp = now;
   state_.armed = (message.base_mode & vehicle::px4::kArmedFlag) != 0U;
-  state_.mode = vehicle::px4::flight_mode(static_cast<std::uint8_t>(message.autopilot), message.custom_mode);
+  if (now - mode_at_ > kModeMaxAge_s)
+    state_.mode = vehicle::px4::flight_mode(static_cast<std::uint8_t>(message.autopilot), message.custom_mode);
   state_.failsafe = message.system_status >= vehicle::px4::kStateCritical;
   info_.autopilot = message.autopilot;
   return true;
+}
+
+// By the heartbeat alone it is known whose numbers these are. A message bears no time: one that was overtaken would
+// tell of a change that is none, so that each counts when the next says the same.
+void AutopilotTelemetry::on(double now, const CurrentMode& message) {
+  const bool again = current_mode_ == message;
+  current_mode_ = message;
+  if (!again || !info_.autopilot) return;
+  const auto autopilot = static_cast<std::uint8_t>(*info_.autopilot);
+  state_.mode = vehicle::px4::flight_mode(autopilot, message.custom_mode);
+  state_.intended_mode = message.intended_custom_mode == 0
+                             ? vehicle::FlightMode::kUnknown
+                             : vehicle::px4::flight_mode(autopilot, message.intended_custom_mode);
+  mode_at_ = now;
 }
 
 bool AutopilotTelemetry::on(double now, const LocalPosition& message) {
@@ -109,7 +124,7 @@ void AutopilotTelemetry::on(const SysStatus& message) {
   remaining_ = vehicle::px4::battery_state_from_remaining(message.battery_remaining_percent);
   info_.battery_percent.reset();
   if (remaining_ != vehicle::BatteryState::kUnknown) info_.battery_percent = message.battery_remaining_percent;
-  info_.rc_receiver = (message.present & message.enabled & message.health & kRcReceiver) != 0U;
+  state_.remote_control = (message.present & message.enabled & message.health & kRcReceiver) != 0U;
 }
 
 void AutopilotTelemetry::on(const ExtendedSysState& message) {
@@ -147,6 +162,7 @@ vehicle::VehicleState AutopilotTelemetry::state(double now) const {
   state.local_position_ok = fresh && estimator_ok_;
   state.health = sys_status_heard_ ? failed_health_ : "no SYS_STATUS yet";
   if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";
+  if (now - mode_at_ > kModeMaxAge_s) state.intended_mode = vehicle::FlightMode::kUnknown;
   state.estimate_resets = resets_.count();
   state.estimate_shift = resets_.shift();
   for (const auto& [id, battery] : batteries_) state.battery = std::max(state.battery, battery);

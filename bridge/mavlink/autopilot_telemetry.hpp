@@ -38,7 +38,6 @@ struct LinkInfo {
   std::optional<vehicle::px4::Version> version;  ///< AUTOPILOT_VERSION, asked for until it comes
   std::optional<std::uint32_t> estimator;        ///< ESTIMATOR_STATUS.flags
   std::optional<double> battery_percent;         ///< SYS_STATUS.battery_remaining
-  bool rc_receiver = false;                      ///< SYS_STATUS: present and healthy
   std::optional<double> round_trip_s;            ///< of PING, the shortest lately
   std::vector<std::uint32_t> other_systems;      ///< system ids of LinkCounts::other_autopilots
 };
@@ -56,12 +55,14 @@ class AutopilotTelemetry {
  public:
   static constexpr double kPositionMaxAge_s = 1.0;
   static constexpr double kReboot_s = 2.0;
+  static constexpr double kModeMaxAge_s = 1.0;  ///< of CURRENT_MODE: then the heartbeat's mode counts
   static constexpr std::size_t kNotices = 64;
 
   AutopilotTelemetry() { state_.landed_state_known = false; }
 
   /// False for a component that says it is no autopilot: malformed.
   bool on(double now, const Heartbeat& message);
+  void on(double now, const CurrentMode& message);
   /// False where it is older than one that came before.
   bool on(double now, const LocalPosition& message);
   /// An answer to our own PING.
@@ -99,6 +100,8 @@ class AutopilotTelemetry {
   vehicle::VehicleState state_;
   LinkInfo info_;
   LinkCounts counts_;
+  std::optional<CurrentMode> current_mode_;  // newest
+  double mode_at_ = base::kNever;            // when it was told twice
   vehicle::EstimateResets resets_;
   vehicle::LinkDelay delay_;
   std::optional<std::uint32_t> boot_ms_;  // newest of LOCAL_POSITION_NED and ATTITUDE

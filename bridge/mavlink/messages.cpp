@@ -67,6 +67,11 @@ bool read(const json& fields, Heartbeat& message) {
          read(fields, "custom_mode", message.custom_mode) && read(fields, "system_status", message.system_status);
 }
 
+bool read(const json& fields, CurrentMode& message) {
+  return read(fields, "custom_mode", message.custom_mode) &&
+         read(fields, "intended_custom_mode", message.intended_custom_mode);
+}
+
 bool read(const json& fields, LocalPosition& message) {
   message.position = frames::enu_from_ned(vector(fields, "x", "y", "z"));
   message.velocity = frames::enu_from_ned(vector(fields, "vx", "vy", "vz"));
@@ -196,6 +201,7 @@ std::optional<Message> decode_as(const json& fields) {
 using Decoder = std::optional<Message> (*)(const json& fields);
 constexpr std::array<std::pair<std::string_view, Decoder>, std::variant_size_v<Message>> kDecoders{{
     {"HEARTBEAT", decode_as<Heartbeat>},
+    {"CURRENT_MODE", decode_as<CurrentMode>},
     {"LOCAL_POSITION_NED", decode_as<LocalPosition>},
     {"ATTITUDE", decode_as<Attitude>},
     {"ODOMETRY", decode_as<Odometry>},

@@ -29,6 +29,12 @@ struct Heartbeat {
   std::uint32_t custom_mode = 0;
   std::uint32_t system_status = 0;  ///< MAV_STATE
 };
+/// What flies, and what was asked for last: a failsafe changes the first alone.
+struct CurrentMode {
+  std::uint32_t custom_mode = 0;
+  std::uint32_t intended_custom_mode = 0;  ///< 0: not told
+  bool operator==(const CurrentMode&) const = default;
+};
 /// LOCAL_POSITION_NED, in ENU.
 struct LocalPosition {
   std::uint32_t boot_ms = 0;  ///< autopilot's time
@@ -97,9 +103,9 @@ struct StatusText {
 };
 
 /// AdsbReport: its time and sender are the caller's to fill in.
-using Message =
-    std::variant<Heartbeat, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState, EstimatorStatus,
-                 BatteryStatus, Origin, CommandAck, AutopilotVersion, Ping, ParamValue, StatusText, AdsbReport>;
+using Message = std::variant<Heartbeat, CurrentMode, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState,
+                             EstimatorStatus, BatteryStatus, Origin, CommandAck, AutopilotVersion, Ping, ParamValue,
+                             StatusText, AdsbReport>;
 
 /// Decodes the message `name` (MAVLink's name) from `json`, an object with a member for each field. Nothing where the
 /// name is none of these, the text is no such object, or a field that matters is missing, not finite or beyond Limits.

@@ -112,7 +112,8 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
       join_system();
-      static constexpr std::array<Interest, 15> kInterests{{{"HEARTBEAT"},
+      static constexpr std::array<Interest, 16> kInterests{{{"HEARTBEAT"},
+                                                            {"CURRENT_MODE"},
                                                             {"LOCAL_POSITION_NED"},
                                                             {"ATTITUDE"},
                                                             {"ODOMETRY"},
@@ -129,7 +130,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
                                                             {"ADSB_VEHICLE", From::kAnyComponent}}};
       autopilot_->subscribe(kInterests);
       ready_ = true;
-      request_streams({false, true, true, true});
+      request_streams({false, true, true, true, true});
       watcher_ = std::jthread([this](const std::stop_token& end) { watch_other_systems(end); });
     } else if (left <= 0.0) {
       break;

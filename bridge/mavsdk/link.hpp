@@ -41,10 +41,10 @@ struct StreamRate {
 /// `battery`: the worst of the batteries' BATTERY_STATUS.charge_state; where that says nothing, SYS_STATUS's remaining
 /// charge by PX4's default thresholds. `origin` is GPS_GLOBAL_ORIGIN's, asked for with each heartbeat until it is told.
 /// `reboots`: the autopilot's time went back by more than kReboot_s; then origin, health and battery are unknown anew.
-/// LOCAL_POSITION_NED and ATTITUDE are asked for at kTelemetryHz, ODOMETRY at kOdometryHz, and again after each
-/// heartbeat interval in which they came slower. A position that is older than one that came before is left out.
-/// PING is sent every LinkDelay::kPeriod: `motion` is stamped as long before it came as its answers tell, which is
-/// `link_delay` too.
+/// LOCAL_POSITION_NED and ATTITUDE are asked for at kTelemetryHz, ODOMETRY at kOdometryHz, CURRENT_MODE at kModeHz, and
+/// again after each heartbeat interval in which they came slower. A position that is older than one that came before is
+/// left out. PING is sent every LinkDelay::kPeriod: `motion` is stamped as long before it came as its answers tell,
+/// which is `link_delay` too.
 ///
 /// A silence of any length ends by itself: nothing has to be opened again. Over UDP, though, MAVSDK sends nothing to a
 /// peer that was silent for 10 s, until it speaks.
@@ -54,6 +54,7 @@ class MavsdkLink final : public vehicle::VehicleLink {
  public:
   static constexpr double kTelemetryHz = 50.0;
   static constexpr double kOdometryHz = 30.0;  ///< what PX4 sends a companion unasked
+  static constexpr double kModeHz = 10.0;      ///< of CURRENT_MODE, which PX4 sends every two seconds unasked
   static constexpr double kPositionMaxAge_s = mavlink::AutopilotTelemetry::kPositionMaxAge_s;
   static constexpr double kReboot_s = mavlink::AutopilotTelemetry::kReboot_s;
 
@@ -94,7 +95,7 @@ class MavsdkLink final : public vehicle::VehicleLink {
                                                                                     double timeout_s,
                                                                                     const std::stop_token& stop = {});
 
-  /// Begins to measure how HEARTBEAT, LOCAL_POSITION_NED, ATTITUDE and ODOMETRY come.
+  /// Begins to measure how HEARTBEAT, LOCAL_POSITION_NED, ATTITUDE, ODOMETRY and CURRENT_MODE come.
   void restart_rates();
   [[nodiscard]] std::vector<StreamRate> rates() const;
 

@@ -91,7 +91,7 @@ class MavsdkLink::Impl {
   static constexpr std::uint8_t kOwnComponent = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
 
   // Streams that are asked for and measured.
-  enum Stream : std::size_t { kHeartbeat, kLocalPosition, kAttitude, kOdometry, kStreams };
+  enum Stream : std::size_t { kHeartbeat, kLocalPosition, kAttitude, kOdometry, kCurrentMode, kStreams };
   struct Tally {
     std::uint64_t count = 0;
     double first = -1.0;
@@ -110,6 +110,7 @@ class MavsdkLink::Impl {
   void take(const Sender& sender, const mavlink::Message& message);
   void malformed();
   void on(double now, const Sender& sender, const mavlink::Heartbeat& message);
+  void on(double now, const Sender& sender, const mavlink::CurrentMode& message);
   void on(double now, const Sender& sender, const mavlink::LocalPosition& message);
   void on(double now, const Sender& sender, const mavlink::Attitude& message);
   void on(double now, const Sender& sender, const mavlink::Odometry& message);
@@ -138,7 +139,7 @@ class MavsdkLink::Impl {
   std::array<Tally, kStreams> tallies_;
   std::array<std::uint64_t, kStreams> heard_{};
   std::array<std::uint64_t, kStreams> at_heartbeat_{};  // heard_ at the heartbeat before
-  int odometry_requests_ = 0;
+  std::array<int, kStreams> requests_{};                // of what was never heard
   double rates_since_ = 0.0;
   std::set<std::uint32_t> other_autopilots_;
   std::deque<mavlink::AdsbReport> adsb_;

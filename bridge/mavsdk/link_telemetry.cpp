@@ -16,8 +16,9 @@ constexpr std::uint32_t kMessageLocalPosition = 32;
 constexpr std::uint32_t kMessageOrigin = 49;
 constexpr std::uint32_t kMessageVersion = 148;
 constexpr std::uint32_t kMessageOdometry = 331;
+constexpr std::uint32_t kMessageCurrentMode = 436;
 constexpr double kRateTolerance = 0.8;  // of the rate asked for: slower than this is asked for again
-constexpr int kOdometryRequests = 5;    // to an autopilot that has never sent any
+constexpr int kRequests = 5;            // of what an autopilot has never sent, and may not know
 constexpr std::size_t kAdsbReports = 1024;
 constexpr std::size_t kParameters = 4096;  // more than any autopilot has
 
@@ -26,11 +27,12 @@ struct StreamSpec {
   std::uint32_t id;  // 0: not asked for
   double hz;
 };
-constexpr std::array<StreamSpec, 4> kStreamSpecs{
+constexpr std::array<StreamSpec, 5> kStreamSpecs{
     {{"HEARTBEAT", 0, 1.0},
      {"LOCAL_POSITION_NED", kMessageLocalPosition, MavsdkLink::kTelemetryHz},
      {"ATTITUDE", kMessageAttitude, MavsdkLink::kTelemetryHz},
-     {"ODOMETRY", kMessageOdometry, MavsdkLink::kOdometryHz}}};
+     {"ODOMETRY", kMessageOdometry, MavsdkLink::kOdometryHz},
+     {"CURRENT_MODE", kMessageCurrentMode, MavsdkLink::kModeHz}}};
 
 }  // namespace
 
@@ -89,7 +91,9 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
       const double wanted = kRateTolerance * kStreamSpecs[i].hz * (now - before);
       slow[i] = static_cast<double>(heard_[i] - at_heartbeat_[i]) < wanted;
     }
-    if (heard_[kOdometry] == 0 && slow[kOdometry]) slow[kOdometry] = ++odometry_requests_ <= kOdometryRequests;
+    for (const Stream stream : {kOdometry, kCurrentMode}) {
+      if (heard_[stream] == 0 && slow[stream]) slow[stream] = ++requests_[stream] <= kRequests;
+    }
     tally(kHeartbeat, now);
     at_heartbeat_ = heard_;
     want_origin = !telemetry_.origin_known();
@@ -128,6 +132,12 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::L
     if (telemetry_.on(now, message)) tally(kLocalPosition, now);
   }
   if (ready_) ping(now);
+}
+
+void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::CurrentMode& message) {
+  const std::scoped_lock lock(mutex_);
+  telemetry_.on(now, message);
+  tally(kCurrentMode, now);
 }
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Attitude& message) {

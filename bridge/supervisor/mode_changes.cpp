@@ -15,6 +15,15 @@ bool flies_by_itself(vehicle::FlightMode mode) {
          mode == vehicle::FlightMode::kMission;
 }
 
+// Somebody chose the mode, whose word is the last one.
+bool ModeChanges::chosen(bool left, const vehicle::VehicleState& state) const {
+  const vehicle::FlightMode intended = state.intended_mode;
+  if (intended != vehicle::FlightMode::kUnknown)
+    return intended != vehicle::FlightMode::kOffboard && (left || intended != intended_before_);
+  // Where a warning had the state CRITICAL before, it does not tell a failsafe from a pilot.
+  return !state.failsafe || (left && critical_in_offboard_);
+}
+
 ModeChange ModeChanges::judge(double now, Phase phase, bool armed_before, const vehicle::VehicleState& state) {
   const bool airborne = phase == Phase::kClimbing || phase == Phase::kFlying;
   const bool asking = phase == Phase::kEngaging || phase == Phase::kStopping || phase == Phase::kHandover;
@@ -29,11 +38,10 @@ ModeChange ModeChanges::judge(double now, Phase phase, bool armed_before, const 
     failsafe_since_.reset();
     return ModeChange::kNone;
   }
-  // Where a warning had the state CRITICAL before, it does not tell a failsafe from a pilot, whose word is the last
-  // one.
-  if (!state.failsafe || (left && critical_in_offboard_)) return ModeChange::kTakeover;
-  if (phase == Phase::kEngaging) {  // of a companion before us: our stream ends it
-    offboard_seen_ = false;
+  if (chosen(left, state)) return ModeChange::kTakeover;
+  if (phase == Phase::kEngaging) {
+    if (flies_by_itself(state.mode)) return ModeChange::kFailsafe;
+    offboard_seen_ = false;  // of a companion before us: our stream ends it
     return ModeChange::kNone;
   }
   if (!failsafe_since_) failsafe_since_ = now;

@@ -21,11 +21,15 @@ enum class ModeChange {
 /// without them.
 [[nodiscard]] bool flies_by_itself(vehicle::FlightMode mode);
 
-/// Judges by the heartbeat, step by step. Pure logic.
+/// Judges step by step: by the mode that was asked for last, where the autopilot tells it (CURRENT_MODE's
+/// intended_custom_mode), since a failsafe leaves that as it was; else by the heartbeat's CRITICAL. Pure logic.
 class ModeChanges {
  public:
-  /// From now on OFFBOARD is asked for; `before` is the mode until then.
-  void engage(vehicle::FlightMode before) { before_ = before; }
+  /// From now on OFFBOARD is asked for.
+  void engage(const vehicle::VehicleState& before) {
+    before_ = before.mode;
+    intended_before_ = before.intended_mode;
+  }
   /// `armed_before`: OFFBOARD flight has begun, which takes armed motors.
   ModeChange judge(double now, Phase phase, bool armed_before, const vehicle::VehicleState& state);
   /// The autopilot's failsafe flies.
@@ -34,7 +38,10 @@ class ModeChanges {
   [[nodiscard]] bool offboard_seen() const { return offboard_seen_; }
 
  private:
+  [[nodiscard]] bool chosen(bool left, const vehicle::VehicleState& state) const;
+
   vehicle::FlightMode before_ = vehicle::FlightMode::kUnknown;
+  vehicle::FlightMode intended_before_ = vehicle::FlightMode::kUnknown;
   bool offboard_seen_ = false;
   bool critical_in_offboard_ = false;  // a mere warning: so PX4 before 1.15 says
   std::optional<double> failsafe_since_;

@@ -103,7 +103,7 @@ Decision Supervisor::step(Waiting& phase, const Input& in) {
             ", north " + base::metres(in.state.motion.value.position.y(), 1));
       return {};
     }
-    mode_changes_.engage(in.state.mode);
+    mode_changes_.engage(in.state);
     phase_ = Engaging{};
     return {Motion::kStay, {}};
   }

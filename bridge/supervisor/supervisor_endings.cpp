@@ -22,6 +22,14 @@ std::string named(vehicle::FlightMode mode) {
   return "mode " + std::string(vehicle::to_string(mode));
 }
 
+// Into a mode that waits for the sticks, and there are some, or that somebody asked for who is not jink.
+bool pilots(const vehicle::VehicleState& state) {
+  const vehicle::FlightMode intended = state.intended_mode;
+  const bool ours = intended == vehicle::FlightMode::kUnknown || intended == vehicle::FlightMode::kOffboard ||
+                    intended == vehicle::FlightMode::kHold || intended == vehicle::FlightMode::kLand;
+  return !flies_by_itself(state.mode) && (state.remote_control || !ours);
+}
+
 }  // namespace
 
 Ending Supervisor::ending_with(const std::string& what) const {
@@ -52,9 +60,11 @@ bool Supervisor::ended_by_mode(const Input& in) {
 
 // True where the failsafe has the vehicle for good; otherwise HOLD is asked for.
 bool Supervisor::left_to_failsafe(const Input& in) {
-  Ending ending = ending_with("the autopilot's failsafe took over, " + named(in.state.mode));
+  const bool pilot = pilots(in.state);
+  Ending ending = ending_with("the autopilot's failsafe took over, " + named(in.state.mode) +
+                              (pilot ? ", and left to the pilot" : ""));
   hazard_.clear();
-  if (flies_by_itself(in.state.mode)) {
+  if (pilot || flies_by_itself(in.state.mode)) {
     finish(std::move(ending));
     return true;
   }
@@ -83,7 +93,7 @@ Decision Supervisor::rescue(Handover& phase, const Input& in) {
     phase.rescue = false;
     return {Motion::kBrake, phase.request.ask(vehicle::Command::kHold, now, state)};
   }
-  if (state.failsafe && !flies_by_itself(state.mode) && !grounded(state)) {
+  if (state.failsafe && !flies_by_itself(state.mode) && !grounded(state) && !pilots(state)) {
     if (!state.local_position_ok) {
       reason += "; without a position there is no HOLD, the failsafe has the vehicle";
     } else if (phase.request.exhausted(now, state)) {
@@ -115,7 +125,7 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
     finish(std::move(ending));
     return {};
   }
-  if (state.failsafe && !offboard && !flies_by_itself(state.mode)) {
+  if (state.failsafe && !offboard && !flies_by_itself(state.mode) && !pilots(state)) {
     ending.reason += "; then the autopilot's failsafe took over, " + named(state.mode);
     ending.outcome = Outcome::kAborted;
     phase.rescue = true;

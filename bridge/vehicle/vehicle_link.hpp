@@ -39,6 +39,9 @@ struct VehicleState {
   double heartbeat_stamp = base::kNever;  ///< newest heartbeat, which carries armed and mode
   bool armed = false;
   FlightMode mode = FlightMode::kUnknown;
+  /// What was asked for last, by whomever; a failsafe leaves it as it was. kUnknown: not told lately.
+  FlightMode intended_mode = FlightMode::kUnknown;
+  bool remote_control = false;                                  ///< a pilot's, healthy
   base::Stamped<base::Kinematics, base::Frame::kLocal> motion;  ///< newest local position with velocity
   /// m, standard deviation of `motion`'s position, the greater of what the autopilot states per horizontal axis and for
   /// the height (ESTIMATOR_STATUS, VehicleLocalPosition); 0: it states none.

@@ -64,6 +64,7 @@ class Companion {
       require(!std::isinf(value), "a parameter is infinite");
     }
   }
+  void on(const jink::bridge::mavlink::CurrentMode& message) { telemetry_.on(clock_.now(), message); }
   void on(const jink::bridge::mavlink::Ping& message) { telemetry_.on(clock_.now(), message); }
   void on(const AdsbReport& message) {
     report_ = message;

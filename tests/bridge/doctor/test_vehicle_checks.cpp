@@ -44,7 +44,8 @@ LinkFindings healthy() {
   h.rates = {{"HEARTBEAT", 1.0, 1.0, 1.01, 5},
              {"LOCAL_POSITION_NED", 50.0, 49.8, 0.03, 250},
              {"ATTITUDE", 50.0, 50.0, 0.03, 250},
-             {"ODOMETRY", 30.0, 30.0, 0.04, 150}};
+             {"ODOMETRY", 30.0, 30.0, 0.04, 150},
+             {"CURRENT_MODE", 10.0, 10.0, 0.11, 50}};
   for (const auto& [name, value] :
        {std::pair{"COM_OBL_RC_ACT", 5.0}, {"COM_OF_LOSS_T", 1.0}, {"COM_RCL_EXCEPT", 4.0}, {"NAV_DLL_ACT", 0.0}}) {
     h.parameters[name] = {name, true, value};
@@ -108,6 +109,7 @@ TEST(Doctor, NamesTheOneThingThatIsWrongWithTheVehicle) {
       {"LOCAL_POSITION_NED", Level::kFault, "4.0 Hz", [](LinkFindings& h) { h.rates[1].measured_hz = 4.0; }},
       {"ATTITUDE", Level::kWarning, "gap 0.70 s", [](LinkFindings& h) { h.rates[2].largest_gap_s = 0.7; }},
       {"ODOMETRY", Level::kWarning, "none", [](LinkFindings& h) { h.rates[3].count = 0; }},
+      {"CURRENT_MODE", Level::kWarning, "none", [](LinkFindings& h) { h.rates[4].count = 0; }},
       {"round trip", Level::kWarning, "400.0 ms", [](LinkFindings& h) { h.info.round_trip_s = 0.4; }},
       {"round trip", Level::kWarning, "no answer", [](LinkFindings& h) { h.info.round_trip_s.reset(); }},
       {"messages", Level::kWarning, "3 unreadable, 4 out",

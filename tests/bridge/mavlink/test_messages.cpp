@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "bridge/mavlink/autopilot_telemetry.hpp"
-
 namespace jink::bridge::mavlink {
 namespace {
 
@@ -103,41 +101,6 @@ TEST(MavlinkMessages, ExtensionFieldsMayBeAbsent) {
   EXPECT_EQ(decoded<StatusText>("STATUSTEXT", R"({"severity":4,"text":"a"})").id, 0U);
   EXPECT_TRUE(
       std::isnan(decoded<ParamValue>("PARAM_VALUE", R"({"param_id":"A","param_type":6,"param_value":null})").field));
-}
-
-TEST(AutopilotTelemetry, APositionIsGoodWhileItIsYoungAndTheEstimatorHoldsIt) {
-  AutopilotTelemetry telemetry;
-  EXPECT_EQ(telemetry.state(5.0).health, "no SYS_STATUS yet, local position");
-  EXPECT_TRUE(telemetry.on(10.0, LocalPosition{1000, Vec3(1, 2, 3), Vec3::Zero()}));
-  telemetry.on(SysStatus{0, 0, vehicle::px4::kPrearmCheck, 80.0});
-  EXPECT_TRUE(telemetry.state(10.9).local_position_ok);
-  EXPECT_FALSE(telemetry.state(11.1).local_position_ok);
-  EXPECT_EQ(telemetry.state(11.1).health, "local position");
-  telemetry.on(EstimatorStatus{0});
-  EXPECT_FALSE(telemetry.state(10.9).local_position_ok);
-}
-
-TEST(AutopilotTelemetry, AnOlderPositionIsLeftOutAndTimeThatBeganAnewIsAReboot) {
-  AutopilotTelemetry telemetry;
-  EXPECT_TRUE(telemetry.on(10.0, LocalPosition{60000, Vec3(1, 0, 0), Vec3::Zero()}));
-  telemetry.on(Origin{{47.0, 8.0, 400.0}});
-  EXPECT_FALSE(telemetry.on(10.1, LocalPosition{59900, Vec3(9, 0, 0), Vec3::Zero()}));
-  EXPECT_EQ(telemetry.state(10.1).motion.value.position, Vec3(1, 0, 0));
-  EXPECT_EQ(telemetry.counts().late, 1U);
-  EXPECT_TRUE(telemetry.on(10.2, LocalPosition{500, Vec3(0, 0, 0), Vec3::Zero()}));
-  EXPECT_EQ(telemetry.state(10.2).reboots, 1U);
-  EXPECT_FALSE(telemetry.origin_known());
-  const auto notice = telemetry.next_notice();
-  ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->name, "autopilot_rebooted");
-}
-
-TEST(AutopilotTelemetry, AComponentThatIsNoAutopilotSaysNothing) {
-  AutopilotTelemetry telemetry;
-  EXPECT_FALSE(telemetry.on(1.0, Heartbeat{vehicle::px4::kAutopilotInvalid, vehicle::px4::kArmedFlag, 0, 0}));
-  EXPECT_FALSE(telemetry.state(1.0).armed);
-  EXPECT_LT(telemetry.heartbeat_stamp(), 0.0);
-  EXPECT_EQ(telemetry.counts().malformed, 1U);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ import time
 
 os.environ["MAVLINK20"] = "1"  # read by the import
 
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import development as mavlink  # common, and CURRENT_MODE
 from pymavlink import mavutil
 
 POSITION_NED = (1.0, 2.0, -3.0)
@@ -34,8 +34,8 @@ ESTIMATOR_OK = 0x37F
 HOLD, OFFBOARD, LAND = 0x03040000, 0x00060000, 0x06040000
 # Rates in Hz before anybody asks for another: those of PX4's companion link.
 DEFAULT_RATES = {"HEARTBEAT": 1, "LOCAL_POSITION_NED": 30, "ATTITUDE": 99, "SYS_STATUS": 5, "EXTENDED_SYS_STATE": 5,
-                 "ESTIMATOR_STATUS": 1, "ODOMETRY": 30, "BATTERY_STATUS": 2}
-RATE_NAMES = {32: "LOCAL_POSITION_NED", 30: "ATTITUDE", 331: "ODOMETRY"}
+                 "ESTIMATOR_STATUS": 1, "ODOMETRY": 30, "BATTERY_STATUS": 2, "CURRENT_MODE": 0.5}
+RATE_NAMES = {32: "LOCAL_POSITION_NED", 30: "ATTITUDE", 331: "ODOMETRY", 436: "CURRENT_MODE"}
 ORIGIN = (473977418, 85455939, 488000)  # 1e-7 deg, 1e-7 deg, mm above mean sea level
 VERSION = 0x010F04FF  # 1.15.4, a release
 PARAMETERS = {"COM_OBL_RC_ACT": 5, "COM_OF_LOSS_T": 0.5, "COM_NEGATIVE": -1, "COM_RCL_EXCEPT": 4}
@@ -68,7 +68,7 @@ class Peer:
     def __init__(self, options):
         self.options = options
         self.link = mavutil.mavlink_connection(f"udpout:127.0.0.1:{options.port}", source_system=options.system,
-                                               source_component=1, dialect="common")
+                                               source_component=1, dialect="development")
         self.wire = Wire(self.link, options.loss, options.delay)
         self.link.mav.file = self.wire
         self.others, self.receivers = {}, {}
@@ -81,6 +81,7 @@ class Peer:
         self.running, self.unread = True, b""
         self.shift, self.resets = [0.0, 0.0, 0.0], 254  # so that the counter wraps soon
         self.status, self.charge, self.remaining = None, 1, 100
+        self.intended = None  # the mode that flies
         self.requests = {}  # of messages and parameters, by id or name: how often
 
     def say(self, **line):
@@ -110,6 +111,8 @@ class Peer:
             m.battery_status_send(0, 0, 0, 300, [4000] * 4 + [65535] * 6, 100, 100, 10, self.remaining, 0, self.charge)
         elif name == "ATTITUDE":
             m.attitude_send(ms, 0.01, -0.02, HEADING, 0, 0, 0)
+        elif name == "CURRENT_MODE":
+            m.current_mode_send(0, self.mode, self.intended if self.intended is not None else self.mode)
         elif name == "SYS_STATUS":
             m.sys_status_send(PRESENT, ENABLED, self.options.health, 100, 12000, -1, self.remaining, 0, 0, 0, 0, 0, 0)
         elif name == "EXTENDED_SYS_STATE":
@@ -229,12 +232,16 @@ class Peer:
     def order_status(self, status):
         self.status = int(status)
 
+    def order_failsafe(self, mode):
+        """Its own, into that mode; what was asked for stays."""
+        self.intended, self.mode = self.mode, int(mode)
+
     def order_battery(self, charge_state, remaining):
         self.charge, self.remaining = int(charge_state), int(remaining)
 
     def sender(self, system, component):
         return mavutil.mavlink_connection(f"udpout:127.0.0.1:{self.options.port}", source_system=int(system),
-                                          source_component=int(component), dialect="common")
+                                          source_component=int(component), dialect="development")
 
     def order_other(self, system):
         """From now on there is a second autopilot on the link."""

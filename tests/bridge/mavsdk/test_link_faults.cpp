@@ -113,6 +113,21 @@ TEST_F(MavsdkFaultTest, FailsafeAndBatteryAreTold) {
   EXPECT_TRUE(state_becomes([](const VehicleState& s) { return s.battery == BatteryState::kUnknown; }));
 }
 
+// Ten times a second, whatever the heartbeat's rate is.
+TEST_F(MavsdkFaultTest, WhatFliesAndWhatWasAskedForAreTold) {
+  fly();
+  ASSERT_TRUE(state_becomes(
+      [](const VehicleState& s) { return s.mode == FlightMode::kHold && s.intended_mode == FlightMode::kHold; }));
+  link_->restart_rates();
+  EXPECT_TRUE(eventually([&] { return link_->rates().back().count >= 10; }));
+  EXPECT_GT(link_->rates().back().measured_hz, 5.0);
+  peer_->order("failsafe 84148224");  // PX4's RETURN
+  EXPECT_TRUE(state_becomes(
+      [](const VehicleState& s) { return s.mode == FlightMode::kReturn && s.intended_mode == FlightMode::kHold; }));
+  peer_->order("stop CURRENT_MODE");
+  EXPECT_TRUE(state_becomes([](const VehicleState& s) { return s.intended_mode == FlightMode::kUnknown; }));
+}
+
 TEST_F(MavsdkFaultTest, OriginAndVersionAreAskedForUntilTheyCome) {
   fly({"--heartbeat-hz", "5", "--deaf", "3"});
   ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.origin.has_value(); }));

@@ -2,6 +2,8 @@
 // Who flies, by the mode; and what becomes of a command that shows no effect.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "bridge/supervisor/command_request.hpp"
 #include "bridge/supervisor/mode_changes.hpp"
 
@@ -10,7 +12,8 @@ namespace {
 
 struct Judged {
   Judged() {
-    changes.engage(vehicle::FlightMode::kHold);
+    state.mode = vehicle::FlightMode::kHold;
+    changes.engage(state);
     state.mode = vehicle::FlightMode::kOffboard;
     state.armed = true;
     EXPECT_EQ(judge(Phase::kEngaging), ModeChange::kNone);
@@ -56,11 +59,45 @@ TEST(ModeChanges, ATakeoverIsOneThoughAWarningWasCriticalBefore) {
   EXPECT_EQ(recovered.judge(Phase::kFlying), ModeChange::kFailsafePasses);
 }
 
+// Whatever the heartbeat says of failsafes: who asked for another mode is a pilot.
+TEST(ModeChanges, WhatWasAskedForTellsAPilotFromAFailsafe) {
+  for (const bool critical : {false, true}) {
+    for (const Phase phase : {Phase::kEngaging, Phase::kClimbing, Phase::kFlying, Phase::kStopping}) {
+      SCOPED_TRACE(std::string(to_string(phase)) + (critical ? ", critical" : ""));
+      Judged pilot;
+      pilot.state.failsafe = critical;
+      pilot.state.mode = pilot.state.intended_mode = vehicle::FlightMode::kPosition;
+      EXPECT_EQ(pilot.judge(phase), ModeChange::kTakeover);
+      Judged failsafe;
+      failsafe.state.failsafe = critical;
+      failsafe.state.mode = vehicle::FlightMode::kReturn;
+      failsafe.state.intended_mode = vehicle::FlightMode::kOffboard;
+      const bool may_pass = phase == Phase::kClimbing || phase == Phase::kFlying;
+      EXPECT_EQ(failsafe.judge(phase), may_pass ? ModeChange::kFailsafePasses : ModeChange::kFailsafe);
+    }
+  }
+}
+
+// OFFBOARD is not asked for again where the autopilot brings the vehicle home.
+TEST(ModeChanges, AFailsafeWhileEngagingIsLeftToItselfWhereItKnowsWhereTo) {
+  for (const vehicle::FlightMode intended : {vehicle::FlightMode::kHold, vehicle::FlightMode::kUnknown}) {
+    ModeChanges changes;
+    vehicle::VehicleState state;
+    state.mode = vehicle::FlightMode::kHold;
+    state.intended_mode = intended;
+    changes.engage(state);
+    EXPECT_EQ(changes.judge(1.0, Phase::kEngaging, false, state), ModeChange::kNone);
+    state.mode = vehicle::FlightMode::kReturn;
+    state.failsafe = true;
+    EXPECT_EQ(changes.judge(1.1, Phase::kEngaging, false, state), ModeChange::kFailsafe);
+  }
+}
+
 TEST(ModeChanges, BeforeOffboardTheModeOfBeforeIsTheOneToStay) {
   ModeChanges changes;
   vehicle::VehicleState state;
-  changes.engage(vehicle::FlightMode::kPosition);
   state.mode = vehicle::FlightMode::kPosition;
+  changes.engage(state);
   EXPECT_EQ(changes.judge(1.0, Phase::kEngaging, false, state), ModeChange::kNone);
   EXPECT_FALSE(changes.offboard_seen());
   state.mode = vehicle::FlightMode::kHold;

@@ -111,6 +111,33 @@ TEST(Supervisor, AFailsafeThatPassesIsAHazardAndNoTakeover) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
 
+// PX4's usual fallback is POSITION, in which the pilot has the sticks.
+TEST(Supervisor, AFailsafeIsLeftToThePilotWhoHasARemoteControl) {
+  Flight flight;
+  flight.state.remote_control = true;
+  flight.fly().run(1.0);
+  flight.requests.clear();
+  flight.state.mode = vehicle::FlightMode::kPosition;
+  flight.state.failsafe = true;
+  flight.run(10.0);
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_TRUE(flight.requests.empty());
+  EXPECT_EQ(flight.supervisor.reason(), "the autopilot's failsafe took over, mode position, and left to the pilot");
+}
+
+TEST(Supervisor, WhoAskedForAnotherModeWhileHoldIsAskedForHasTheVehicle) {
+  Flight flight;
+  flight.stop().context.at_rest = true;
+  flight.run(0.5);
+  ASSERT_EQ(flight.supervisor.phase(), Phase::kHandover);
+  flight.requests.clear();
+  flight.state.mode = flight.state.intended_mode = vehicle::FlightMode::kPosition;
+  flight.state.failsafe = true;  // before 1.15 a mere warning
+  flight.run(10.0);
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_TRUE(flight.requests.empty());
+}
+
 TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
   Flight flight;
   flight.fly().run(1.0);
