@@ -187,6 +187,7 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.armed = autopilot_.armed();
   state.mode = bridge_mode(autopilot_.mode());
   state.intended_mode = bridge_mode(autopilot_.intended_mode());
+  state.remote_control = autopilot_.remote_control();
   state.motion.value = {motion.position, motion.velocity};
   state.position_sigma = bridge::vehicle::px4::position_sigma(autopilot_.estimator().horizontal_accuracy(),
                                                               autopilot_.estimator().vertical_accuracy());

@@ -174,11 +174,13 @@ void MavlinkEndpoint::Impl::send_heartbeat(MavlinkLink& link) {
 
 void MavlinkEndpoint::Impl::send_sys_status(MavlinkLink& link) {
   mavlink_sys_status_t message{};
-  message.onboard_control_sensors_present = kSensorsPresent;
+  const std::uint32_t remote_control =
+      autopilot_.remote_control() ? std::uint32_t{MAV_SYS_STATUS_SENSOR_RC_RECEIVER} : 0U;
+  message.onboard_control_sensors_present = kSensorsPresent | remote_control;
   message.onboard_control_sensors_enabled = kSensorsEnabled;
   message.onboard_control_sensors_health =
       (autopilot_.estimator().gps() ? kSensorsHealthy : kSensorsHealthy & ~std::uint32_t{MAV_SYS_STATUS_SENSOR_GPS}) |
-      (autopilot_.prearm_ok() ? std::uint32_t{MAV_SYS_STATUS_PREARM_CHECK} : 0U);
+      (autopilot_.prearm_ok() ? std::uint32_t{MAV_SYS_STATUS_PREARM_CHECK} : 0U) | remote_control;
   message.load = 100;
   message.voltage_battery = 16200;
   message.current_battery = -100;
@@ -193,6 +195,7 @@ void MavlinkEndpoint::Impl::send_extended_sys_state(MavlinkLink& link) {
 }
 
 void MavlinkEndpoint::Impl::send_current_mode(MavlinkLink& link) {
+  if (autopilot_.options().version < vehicle::Px4Version::k1_16) return;  // PX4 has it since 1.15
   mavlink_current_mode_t message{};
   message.custom_mode = static_cast<std::uint32_t>(autopilot_.mode());
   message.intended_custom_mode = static_cast<std::uint32_t>(autopilot_.intended_mode());

@@ -169,6 +169,8 @@ class Autopilot {
   [[nodiscard]] FlightMode mode() const { return failsafe_ ? *failsafe_ : intended_mode_; }
   /// The mode last asked for.
   [[nodiscard]] FlightMode intended_mode() const { return intended_mode_; }
+  /// Whether a pilot has used one.
+  [[nodiscard]] bool remote_control() const { return remote_control_; }
   [[nodiscard]] bool armed() const { return armed_; }
   [[nodiscard]] bool landed() const { return landed_; }
   [[nodiscard]] bool crashed() const { return crashed_; }
@@ -279,7 +281,7 @@ class Autopilot {
   bool mission_reported_ = false;    ///< likewise
   bool home_was_set_ = false;        ///< by command, since it was last disarmed
   bool battery_taken_over_ = false;  ///< by a change of mode during its failsafe
-  bool remote_control_ = false;      ///< a pilot has used one
+  bool remote_control_ = false;
   bool refuses_arming_ = false;
   bool refuses_offboard_ = false;
 };

@@ -14,6 +14,7 @@ from flight import Arena, check, interrupt, main, wait, wait_until
 VERSIONS = {"1.14": "PX4 1.14.0", "1.16": "PX4 1.16.0", "1.18": "PX4 1.18.0"}
 LOW = {"at": 0.5, "kind": "low_battery", "remaining": 0.12}
 PILOT = {"at": 1.5, "kind": "pilot_mode", "mode": "position"}
+LOW_AT_ONCE = {**LOW, "at": PILOT["at"]}  # 1.14 says CRITICAL for it: nothing but the sticks tells it from a failsafe
 
 
 def scenario(arena, *faults):
@@ -50,8 +51,12 @@ def test(jink, instance):
                   f"{version}, {'DDS' if way else 'MAVLink'}: {summary['outcome']}, {summary['reason']}")
             check(any(e["name"] == "battery" and e["detail"] == "low" for e in events), "with a low battery")
             check(not any("failsafe" in hazard["what"] for hazard in summary["hazards"]), "which is taken for no failsafe")
-        status, summary, _ = flight(jink, int(instance), version, [LOW, PILOT], arrival="hold")
-        check(status == 1 and "position by pilot" in summary["reason"], f"{version}: {summary['reason']}")
+        for low, reason in ((LOW, "position by pilot"),
+                            (LOW_AT_ONCE, "left to the pilot" if version == "1.14" else "position by pilot")):
+            status, summary, events = flight(jink, int(instance), version, [low, PILOT], arrival="hold")
+            check(status == 1 and reason in summary["reason"], f"{version}: {summary['reason']}")
+            requests = [e["detail"] for e in events if e["name"] == "request"]
+            check(not any("hold" in request for request in requests), f"HOLD is not among {requests}")
 
 
 main(test)
