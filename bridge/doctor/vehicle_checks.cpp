@@ -21,8 +21,8 @@ constexpr double kParameterTime_s = 3.0;  // at most, for all of them
 constexpr auto kSlice = std::chrono::milliseconds(50);
 constexpr double kRateTolerance = 0.8;  // of the rate asked for
 constexpr double kLeastPosition_hz = 10.0;
-constexpr double kLongestHeartbeatGap_s = 2.5;  // two lost ones are more than chance
-constexpr double kLongestGap_s = 0.2;           // of the other streams
+constexpr double kLongestGap = 2.5;    // periods: two lost ones are more than chance
+constexpr double kLongestGap_s = 0.2;  // what is short enough at any rate
 constexpr double kLongRoundTrip_s = 0.1;
 constexpr int kTestedMinor = 17;  // PX4 1.N: what the bridge was measured against; 1.13 brought today's failsafes
 constexpr int kOldestMinor = 13;
@@ -76,7 +76,7 @@ Check inspect_rate(const mavsdk::StreamRate& rate, std::size_t index) {
   const bool position = std::string_view(rate.message) == "LOCAL_POSITION_NED";
   if (rate.count == 0) {
     check.level = position || heartbeat ? Level::kFault : Level::kWarning;
-    check.finding = fmt::format("none, {:g} Hz asked for", rate.asked_hz);
+    check.finding = fmt::format("none, {:g} Hz expected", rate.expected_hz);
     check.remedy = position ? "wait for a position estimate; check that the link streams LOCAL_POSITION_NED (32)"
                             : "check the streams of this link on the autopilot";
     if (std::string_view(rate.message) == "ODOMETRY") {
@@ -86,10 +86,10 @@ Check inspect_rate(const mavsdk::StreamRate& rate, std::size_t index) {
     }
     return check;
   }
-  check.finding = fmt::format("{:.1f} Hz, {}{:g}, largest gap {:.2f} s", rate.measured_hz,
-                              heartbeat ? "expected " : "asked for ", rate.asked_hz, rate.largest_gap_s);
-  const bool slow = rate.count > 1 && rate.measured_hz < kRateTolerance * rate.asked_hz;
-  const bool gap = rate.largest_gap_s > (heartbeat ? kLongestHeartbeatGap_s : kLongestGap_s);
+  check.finding = fmt::format("{:.1f} Hz, expected {:g}, largest gap {:.2f} s", rate.measured_hz, rate.expected_hz,
+                              rate.largest_gap_s);
+  const bool slow = rate.count > 1 && rate.measured_hz < kRateTolerance * rate.expected_hz;
+  const bool gap = rate.largest_gap_s > std::max(kLongestGap_s, kLongestGap / rate.expected_hz);
   if (slow || gap) {
     check.level = position && rate.measured_hz < kLeastPosition_hz ? Level::kFault : Level::kWarning;
     check.remedy = "a faster or less busy link: check baud rate, the port's MAV_n_RATE, radio and processor load";

@@ -71,12 +71,15 @@ bool AutopilotTelemetry::on(double now, const Heartbeat& message) {
   return true;
 }
 
-// By the heartbeat alone it is known whose numbers these are. A message bears no time: one that was overtaken would
-// tell of a change that is none, so that each counts when the next says the same.
+// By the heartbeat alone it is known whose numbers these are. A message bears no time: one that goes back to what was
+// left a moment ago was overtaken, or the next one says so too.
 void AutopilotTelemetry::on(double now, const CurrentMode& message) {
-  const bool again = current_mode_ == message;
-  current_mode_ = message;
-  if (!again || !info_.autopilot) return;
+  if (!info_.autopilot) return;
+  if (current_mode_ != message) {
+    if (mode_before_ == message && now - mode_changed_at_ < kOvertaken_s) return;
+    mode_before_ = std::exchange(current_mode_, message);
+    mode_changed_at_ = now;
+  }
   const auto autopilot = static_cast<std::uint8_t>(*info_.autopilot);
   state_.mode = vehicle::px4::flight_mode(autopilot, message.custom_mode);
   state_.intended_mode = message.intended_custom_mode == 0

@@ -55,7 +55,8 @@ class AutopilotTelemetry {
  public:
   static constexpr double kPositionMaxAge_s = 1.0;
   static constexpr double kReboot_s = 2.0;
-  static constexpr double kModeMaxAge_s = 1.0;  ///< of CURRENT_MODE: then the heartbeat's mode counts
+  static constexpr double kModeMaxAge_s = 1.2;  ///< of CURRENT_MODE: then the heartbeat's mode counts
+  static constexpr double kOvertaken_s = 0.4;   ///< by no more; PX4 tells the mode twice a second
   static constexpr std::size_t kNotices = 64;
 
   AutopilotTelemetry() { state_.landed_state_known = false; }
@@ -100,8 +101,10 @@ class AutopilotTelemetry {
   vehicle::VehicleState state_;
   LinkInfo info_;
   LinkCounts counts_;
-  std::optional<CurrentMode> current_mode_;  // newest
-  double mode_at_ = base::kNever;            // when it was told twice
+  std::optional<CurrentMode> current_mode_;
+  std::optional<CurrentMode> mode_before_;
+  double mode_changed_at_ = base::kNever;
+  double mode_at_ = base::kNever;  // when it was told
   vehicle::EstimateResets resets_;
   vehicle::LinkDelay delay_;
   std::optional<std::uint32_t> boot_ms_;  // newest of LOCAL_POSITION_NED and ATTITUDE

@@ -24,7 +24,7 @@ namespace jink::bridge::mavsdk {
 /// How a stream of messages came since restart_rates().
 struct StreamRate {
   const char* message = "";    ///< MAVLink's name
-  double asked_hz = 0.0;       ///< what jink asks for; the heartbeat is not asked for: 1 Hz
+  double expected_hz = 0.0;    ///< PX4's for HEARTBEAT and CURRENT_MODE, what is asked for of the others
   double measured_hz = 0.0;    ///< 0 where fewer than two came
   double largest_gap_s = 0.0;  ///< the present silence included
   std::uint64_t count = 0;
@@ -54,7 +54,7 @@ class MavsdkLink final : public vehicle::VehicleLink {
  public:
   static constexpr double kTelemetryHz = 50.0;
   static constexpr double kOdometryHz = 30.0;  ///< what PX4 sends a companion unasked
-  static constexpr double kModeHz = 10.0;      ///< of CURRENT_MODE, which PX4 sends every two seconds unasked
+  static constexpr double kModeHz = 10.0;      ///< of CURRENT_MODE, at most: of a change it is told so soon
   static constexpr double kPositionMaxAge_s = mavlink::AutopilotTelemetry::kPositionMaxAge_s;
   static constexpr double kReboot_s = mavlink::AutopilotTelemetry::kReboot_s;
 

@@ -17,7 +17,8 @@ constexpr std::uint32_t kMessageOrigin = 49;
 constexpr std::uint32_t kMessageVersion = 148;
 constexpr std::uint32_t kMessageOdometry = 331;
 constexpr std::uint32_t kMessageCurrentMode = 436;
-constexpr double kRateTolerance = 0.8;  // of the rate asked for: slower than this is asked for again
+constexpr double kRateTolerance = 0.8;  // of the rate expected: slower than this is asked for again
+constexpr double kModeNewsHz = 2.0;     // PX4 sends the mode when its vehicle_status is new: then, or changed
 constexpr int kRequests = 5;            // of what an autopilot has never sent, and may not know
 constexpr std::size_t kAdsbReports = 1024;
 constexpr std::size_t kParameters = 4096;  // more than any autopilot has
@@ -25,14 +26,15 @@ constexpr std::size_t kParameters = 4096;  // more than any autopilot has
 struct StreamSpec {
   const char* message;
   std::uint32_t id;  // 0: not asked for
-  double hz;
+  double asked_hz;
+  double expected_hz;
 };
 constexpr std::array<StreamSpec, 5> kStreamSpecs{
-    {{"HEARTBEAT", 0, 1.0},
-     {"LOCAL_POSITION_NED", kMessageLocalPosition, MavsdkLink::kTelemetryHz},
-     {"ATTITUDE", kMessageAttitude, MavsdkLink::kTelemetryHz},
-     {"ODOMETRY", kMessageOdometry, MavsdkLink::kOdometryHz},
-     {"CURRENT_MODE", kMessageCurrentMode, MavsdkLink::kModeHz}}};
+    {{"HEARTBEAT", 0, 0.0, 1.0},
+     {"LOCAL_POSITION_NED", kMessageLocalPosition, MavsdkLink::kTelemetryHz, MavsdkLink::kTelemetryHz},
+     {"ATTITUDE", kMessageAttitude, MavsdkLink::kTelemetryHz, MavsdkLink::kTelemetryHz},
+     {"ODOMETRY", kMessageOdometry, MavsdkLink::kOdometryHz, MavsdkLink::kOdometryHz},
+     {"CURRENT_MODE", kMessageCurrentMode, MavsdkLink::kModeHz, kModeNewsHz}}};
 
 }  // namespace
 
@@ -44,7 +46,7 @@ void MavsdkLink::Impl::take(const Sender& sender, const mavlink::Message& messag
 // A request that is lost, refused or not followed is made again at the next heartbeat.
 void MavsdkLink::Impl::request_streams(const std::array<bool, kStreams>& slow) const {
   for (std::size_t i = 0; i < kStreams; ++i) {
-    if (slow[i]) (void)transmit(vehicle::px4::message_interval(kStreamSpecs[i].id, kStreamSpecs[i].hz));
+    if (slow[i]) (void)transmit(vehicle::px4::message_interval(kStreamSpecs[i].id, kStreamSpecs[i].asked_hz));
   }
 }
 
@@ -70,7 +72,7 @@ std::vector<StreamRate> MavsdkLink::Impl::rates() const {
   std::vector<StreamRate> rates;
   for (std::size_t i = 0; i < kStreams; ++i) {
     const Tally& t = tallies_[i];
-    StreamRate rate{kStreamSpecs[i].message, kStreamSpecs[i].hz, 0.0, t.largest_gap, t.count};
+    StreamRate rate{kStreamSpecs[i].message, kStreamSpecs[i].expected_hz, 0.0, t.largest_gap, t.count};
     if (t.count > 1) rate.measured_hz = static_cast<double>(t.count - 1) / (t.last - t.first);
     rate.largest_gap_s = std::max(rate.largest_gap_s, now - (t.count > 0 ? t.last : rates_since_));
     rates.push_back(rate);
@@ -88,7 +90,7 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     const double before = telemetry_.heartbeat_stamp();
     if (!telemetry_.on(now, message)) return;
     for (std::size_t i = kLocalPosition; i < kStreams && before >= 0.0; ++i) {
-      const double wanted = kRateTolerance * kStreamSpecs[i].hz * (now - before);
+      const double wanted = kRateTolerance * kStreamSpecs[i].expected_hz * (now - before);
       slow[i] = static_cast<double>(heard_[i] - at_heartbeat_[i]) < wanted;
     }
     for (const Stream stream : {kOdometry, kCurrentMode}) {

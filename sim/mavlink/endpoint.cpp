@@ -21,6 +21,7 @@ constexpr int kCompanionRemotePort = 14540;
 constexpr int kGroundLocalPort = 18570;
 constexpr int kGroundRemotePort = 14550;
 
+constexpr double kStatusPeriod = 0.5;      ///< s, of vehicle_status where nothing changes
 constexpr double kReadyDelay = 4.3;        ///< s, of PX4's SITL: the measure of the start-up times
 constexpr std::size_t kListedPerPoll = 2;  ///< parameters of a list: 500 a second, as a list at full rate
 constexpr std::size_t kTextChunk = 50;     ///< characters that STATUSTEXT holds
@@ -129,6 +130,7 @@ void MavlinkEndpoint::Impl::poll(double now) {
   }
   watch_reboots();  // a command may ask for one
   watch_companion();
+  watch_modes();
   update_missions();
   for (MavlinkLink& link : links_) {
     send_streams(link);
@@ -136,6 +138,14 @@ void MavlinkEndpoint::Impl::poll(double now) {
   }
   send_status_texts();
   send_events();
+}
+
+/// vehicle_status is published when it changes, and twice a second.
+void MavlinkEndpoint::Impl::watch_modes() {
+  const std::array modes{autopilot_.mode(), autopilot_.intended_mode()};
+  if (modes == modes_ && now_ - modes_at_ < kStatusPeriod) return;
+  modes_ = modes;
+  modes_at_ = now_;
 }
 
 /// After a reboot everything begins anew, rates and clocks too.

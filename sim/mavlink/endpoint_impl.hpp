@@ -3,6 +3,7 @@
 // mavlink_streams.cpp (what goes out), mavlink_sensors.cpp, mavlink_events.cpp. No other file includes it.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,7 @@ class MavlinkEndpoint::Impl {
     double rate_hz = 0.0;  ///< PX4's default; 0: on request
     double first_s = 0.0;  ///< after PX4's start, before which it is not streamed
     void (Impl::*send)(MavlinkLink&) = nullptr;
+    double Impl::*news_at = nullptr;  ///< what has no news since is not sent
   };
 
  private:
@@ -58,6 +60,7 @@ class MavlinkEndpoint::Impl {
   void handle_heartbeat(MavlinkLink& link, const mavlink_message_t& message);
   void watch_companion();
   void watch_reboots();
+  void watch_modes();
   void handle_position_target(const mavlink_message_t& message);
   void handle_parameter_read(MavlinkLink& link, const mavlink_message_t& message);
   void handle_parameter_set(const mavlink_message_t& message);
@@ -154,7 +157,9 @@ class MavlinkEndpoint::Impl {
   int reboots_ = 0;                        ///< that the links know of
   std::optional<double> companion_heard_;  ///< its last heartbeat
   bool companion_lost_ = false;
-  double start_factor_;  ///< of PX4's start-up times: less when the autopilot is ready sooner
+  std::array<vehicle::FlightMode, 2> modes_{};  ///< that flies, that was asked for last
+  double modes_at_ = 0.0;                       ///< when they were news: PX4's vehicle_status
+  double start_factor_;                         ///< of PX4's start-up times: less when the autopilot is ready sooner
   std::uint16_t next_text_id_ = 1;
   std::uint32_t next_ping_ = 0;
   std::uint16_t event_sequence_ = 0;  ///< of the newest event

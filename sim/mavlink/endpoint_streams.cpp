@@ -96,7 +96,7 @@ std::span<const MavlinkEndpoint::Impl::MessageKind> MavlinkEndpoint::Impl::messa
       MessageKind{MAVLINK_MSG_ID_SYSTEM_TIME, 1, kLinkUp, &Impl::send_system_time},
       MessageKind{MAVLINK_MSG_ID_SCALED_PRESSURE, 1, kLinkUp, &Impl::send_scaled_pressure},
       MessageKind{MAVLINK_MSG_ID_BATTERY_STATUS, 0.5, kLinkUp, &Impl::send_battery},
-      MessageKind{MAVLINK_MSG_ID_CURRENT_MODE, 0.5, kLinkUp, &Impl::send_current_mode},
+      MessageKind{MAVLINK_MSG_ID_CURRENT_MODE, 0.5, kLinkUp, &Impl::send_current_mode, &Impl::modes_at_},
       MessageKind{MAVLINK_MSG_ID_HOME_POSITION, 0.5, 2.4, &Impl::send_home},
       MessageKind{MAVLINK_MSG_ID_VIBRATION, 0.5, kLinkUp, &Impl::send_vibration},
       MessageKind{MAVLINK_MSG_ID_CURRENT_EVENT_SEQUENCE, 1.0 / 3.0, kLinkUp, &Impl::send_event_sequence},
@@ -127,6 +127,8 @@ void MavlinkEndpoint::Impl::send_streams(MavlinkLink& link) {
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     Stream& stream = link.streams[i];
     if (now_ < stream.next_due - kNearZero) continue;
+    if (kinds[i].news_at != nullptr && this->*kinds[i].news_at <= stream.sent) continue;
+    stream.sent = now_;
     if (stream.interval > 0.0) {
       // In step with the grid of due times, so that the mean rate is the asked one whatever the polling rate; what
       // was missed by more than an interval stays missed.

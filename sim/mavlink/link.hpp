@@ -22,6 +22,7 @@ namespace jink::sim::mavlink {
 struct Stream {
   double interval = 0.0;  ///< s; 0: only on request
   double next_due = 0.0;  ///< s, endpoint time
+  double sent = 0.0;      ///< s, endpoint time
 };
 
 class MavlinkLink {

@@ -45,7 +45,7 @@ LinkFindings healthy() {
              {"LOCAL_POSITION_NED", 50.0, 49.8, 0.03, 250},
              {"ATTITUDE", 50.0, 50.0, 0.03, 250},
              {"ODOMETRY", 30.0, 30.0, 0.04, 150},
-             {"CURRENT_MODE", 10.0, 10.0, 0.11, 50}};
+             {"CURRENT_MODE", 2.0, 2.0, 0.51, 10}};
   for (const auto& [name, value] :
        {std::pair{"COM_OBL_RC_ACT", 5.0}, {"COM_OF_LOSS_T", 1.0}, {"COM_RCL_EXCEPT", 4.0}, {"NAV_DLL_ACT", 0.0}}) {
     h.parameters[name] = {name, true, value};

@@ -23,27 +23,34 @@ struct Heard {
   double now = 10.0;
 };
 
-TEST(AutopilotTelemetry, WhatFliesAndWhatWasAskedForCountWhenToldTwice) {
+TEST(AutopilotTelemetry, WhatFliesAndWhatWasAskedForAreTold) {
   Heard heard;
   EXPECT_EQ(heard.state().intended_mode, FlightMode::kUnknown);
-  heard.mode(kOffboard, kOffboard);
-  heard.mode(kOffboard, kOffboard);
-  heard.mode(kHold, kHold);  // overtaken by the two before
-  EXPECT_EQ(heard.state().mode, FlightMode::kOffboard);
-  EXPECT_EQ(heard.state().intended_mode, FlightMode::kOffboard);
-  heard.mode(kReturn, kOffboard);
   heard.mode(kReturn, kOffboard);
   EXPECT_EQ(heard.state().mode, FlightMode::kReturn);
   EXPECT_EQ(heard.state().intended_mode, FlightMode::kOffboard);
 }
 
+TEST(AutopilotTelemetry, AModeThatWasJustLeftWasOvertakenUnlessItIsToldOn) {
+  Heard heard;
+  heard.mode(kHold, kHold);
+  heard.now += 1.0;
+  heard.mode(kOffboard, kOffboard);
+  heard.now += 0.3;
+  heard.mode(kHold, kHold);
+  EXPECT_EQ(heard.state().mode, FlightMode::kOffboard);
+  heard.now += 0.5;
+  heard.mode(kHold, kHold);
+  EXPECT_EQ(heard.state().mode, FlightMode::kHold);
+  EXPECT_EQ(heard.state().intended_mode, FlightMode::kHold);
+}
+
 TEST(AutopilotTelemetry, TheHeartbeatsModeCountsWhereNothingNewerIsTold) {
   Heard heard;
   heard.mode(kOffboard, kOffboard);
-  heard.mode(kOffboard, kOffboard);
   heard.heartbeat(kHold);  // of before
   EXPECT_EQ(heard.state().mode, FlightMode::kOffboard);
-  heard.now += 1.1;
+  heard.now += 1.3;
   EXPECT_EQ(heard.state().intended_mode, FlightMode::kUnknown);
   heard.heartbeat(kHold);
   EXPECT_EQ(heard.state().mode, FlightMode::kHold);

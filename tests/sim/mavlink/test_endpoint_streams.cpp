@@ -55,6 +55,18 @@ TEST_F(MavlinkEndpointTest, StreamsAtPx4sRates) {
   }
 }
 
+// However often it is asked for: PX4 sends it when its vehicle_status is new.
+TEST_F(MavlinkEndpointTest, SendsTheModeTwiceASecondAndSoonAfterAChange) {
+  run(1.0);
+  ASSERT_EQ(command(MAV_CMD_SET_MESSAGE_INTERVAL, {MAVLINK_MSG_ID_CURRENT_MODE, 100000}), (Results{0}));
+  run(10.0);
+  EXPECT_NEAR(static_cast<double>(count(heard, MAVLINK_MSG_ID_CURRENT_MODE)), 20.0, 1.0);
+  heard.clear();
+  autopilot.pilot_mode(vehicle::FlightMode::kPosition);
+  run(0.11);
+  EXPECT_EQ(count(heard, MAVLINK_MSG_ID_CURRENT_MODE), 1U);
+}
+
 TEST_F(MavlinkEndpointTest, NumbersItsPacketsWithoutGaps) {
   run(2.0);
   for (std::size_t i = 1; i < heard.size(); ++i) {
