@@ -22,6 +22,12 @@ std::string named(vehicle::FlightMode mode) {
   return "mode " + std::string(vehicle::to_string(mode));
 }
 
+// The heartbeat that says CRITICAL may come a second after the mode that was not asked for.
+bool failsafe_flies(const vehicle::VehicleState& state) {
+  using vehicle::FlightMode;
+  return state.failsafe || (state.intended_mode == FlightMode::kOffboard && state.mode != FlightMode::kOffboard);
+}
+
 // Into a mode that waits for the sticks, and there are some, or that somebody asked for who is not jink.
 bool pilots(const vehicle::VehicleState& state) {
   const vehicle::FlightMode intended = state.intended_mode;
@@ -93,7 +99,7 @@ Decision Supervisor::rescue(Handover& phase, const Input& in) {
     phase.rescue = false;
     return {Motion::kBrake, phase.request.ask(vehicle::Command::kHold, now, state)};
   }
-  if (state.failsafe && !flies_by_itself(state.mode) && !grounded(state) && !pilots(state)) {
+  if (failsafe_flies(state) && !flies_by_itself(state.mode) && !grounded(state) && !pilots(state)) {
     if (!state.local_position_ok) {
       reason += "; without a position there is no HOLD, the failsafe has the vehicle";
     } else if (phase.request.exhausted(now, state)) {
@@ -125,7 +131,7 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
     finish(std::move(ending));
     return {};
   }
-  if (state.failsafe && !offboard && !flies_by_itself(state.mode) && !pilots(state)) {
+  if (failsafe_flies(state) && !offboard && !flies_by_itself(state.mode) && !pilots(state)) {
     ending.reason += "; then the autopilot's failsafe took over, " + named(state.mode);
     ending.outcome = Outcome::kAborted;
     phase.rescue = true;

@@ -138,6 +138,19 @@ TEST(Supervisor, WhoAskedForAnotherModeWhileHoldIsAskedForHasTheVehicle) {
   EXPECT_TRUE(flight.requests.empty());
 }
 
+// CURRENT_MODE comes up to a second before the heartbeat that says CRITICAL.
+TEST(Supervisor, OutOfAFailsafeThatTheModesTellFirstItAsksForHoldToo) {
+  Flight flight;
+  flight.fly().run(1.0);
+  flight.stop();
+  flight.requests.clear();
+  flight.state.mode = vehicle::FlightMode::kPosition;
+  flight.state.intended_mode = vehicle::FlightMode::kOffboard;
+  flight.run(0.1);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
+  EXPECT_EQ(flight.requests, std::vector{vehicle::Command::kHold});
+}
+
 TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
   Flight flight;
   flight.fly().run(1.0);
