@@ -64,7 +64,7 @@ std::string read_connection(const Value& value) {
 Vec3 read_waypoint(const Value& value, const Mission& mission) {
   Vec3 point = value.vec3(kCoordinate);
   Vec3 flown = point;
-  flown.z() = std::max(point.z(), mission.min_height);
+  if (mission.heights == Heights::kGround) flown.z() = std::max(point.z(), mission.min_height);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const Range range = closed(mission.geofence.min[axis], mission.geofence.max[axis]);
@@ -79,6 +79,11 @@ Vec3 read_waypoint(const Value& value, const Mission& mission) {
 void read_heights(const Map& map, Mission& mission) {
   mission.takeoff_height = map.number_or("takeoff_height", above(0, 100), mission.takeoff_height);
   mission.min_height = map.number_or("min_height", closed(0, 1000), mission.min_height);
+  if (const auto heights = map.find("heights")) {
+    static constexpr std::array<std::string_view, 3> kNames = {"ground", "origin", "amsl"};
+    mission.heights = static_cast<Heights>(heights->choice(kNames));
+  }
+  if (mission.heights != Heights::kGround) return;
   const double ceiling = mission.geofence.max.z();
   if (mission.min_height >= ceiling) {
     map.at("min_height", "").fail("is not below the geofence's top; not in " + below(0, ceiling).text());
@@ -128,8 +133,8 @@ TrackPolicy read_tracks(const Value& value) {
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "connection", "vehicle", "takeoff_height", "min_height", "waypoints", "arrival",
-                 "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
+                {"format", "name", "connection", "vehicle", "takeoff_height", "min_height", "heights", "waypoints",
+                 "arrival", "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
                 "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
@@ -156,6 +161,18 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   if (const auto intents = map.find("intents")) mission.intents = intents->boolean();
   if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
   mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
+  return mission;
+}
+
+Mission in_local_frame(Mission mission, double ground, double origin_amsl) {
+  const double up = mission.heights == Heights::kGround ? ground
+                    : mission.heights == Heights::kSea  ? -origin_amsl
+                                                        : 0.0;
+  for (Vec3& waypoint : mission.waypoints) waypoint.z() += up;
+  mission.geofence.min.z() += up;
+  mission.geofence.max.z() += up;
+  mission.min_height += ground;
+  mission.ground = ground;
   return mission;
 }
 

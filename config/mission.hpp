@@ -17,6 +17,9 @@ enum class Arrival { kLand, kHold };
 /// Arming, modes and health are MAVLink's in either case.
 enum class Transport { kMavlink, kDds };
 
+/// What waypoints and geofence are above.
+enum class Heights { kGround, kOrigin, kSea };
+
 /// Who may tell of obstacles.
 struct TrackSources {
   bool jink = true;      ///< jink_msgs/ObstacleTracks on DDS
@@ -38,7 +41,8 @@ struct Mission {
   std::string vehicle_name;  ///< "inline" where the file gives a map
   planner::base::VehicleLimits vehicle;
   double takeoff_height = 1.5;  ///< above the ground at take-off
-  double min_height = 1.0;      ///< the plan never goes below; ENU z
+  double min_height = 1.0;      ///< above the ground; the plan never goes below
+  Heights heights = Heights::kGround;
   std::vector<Vec3> waypoints;
   Arrival arrival = Arrival::kLand;
   planner::base::Box geofence;  ///< unbounded when the file has none
@@ -49,18 +53,24 @@ struct Mission {
   bool intents = true;  ///< tells the team's other vehicles the committed path, and avoids theirs
   TrackPolicy tracks;
   double time_limit = 300.0;
+  double ground = 0.0;  ///< its height; no key of the file, see in_local_frame
 };
 
 /// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does, and finds vehicles as it does.
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
-/// takeoff_height, min_height, arrival, geofence (unbounded; with both min and max when given), dds.domain,
-/// dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds), intents, time_limit.
+/// takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min and max
+/// when given), dds.domain, dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds), intents,
+/// time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
-/// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. A waypoint may be lower than min_height,
-/// as the flight raises it to that; so raised it must lie in the geofence. takeoff_height and min_height
-/// must be below the geofence's top.
+/// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. With heights above the ground a waypoint
+/// may be lower than min_height, as the flight raises it to that; so raised it must lie in the geofence, and
+/// takeoff_height and min_height must be below the geofence's top. With others that shows where the vehicle stands.
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles = {});
+
+/// `mission` with its heights as z of a local ENU frame, min_height too: `ground` is that of the ground, `origin_amsl`
+/// the origin's height above the sea.
+Mission in_local_frame(Mission mission, double ground, double origin_amsl);
 
 }  // namespace jink::config

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/companion/companion.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bridge/base/text.hpp"
@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kStall = 0.2;      // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
+constexpr double kLow = 0.3;        // m, below min_height: less is noise
+constexpr double kFlat = 0.05;      // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   supervisor::SupervisorSettings result;
@@ -19,21 +21,21 @@ supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettin
   return result;
 }
 
-// With no waypoint below min_height; `raised` says of each that was.
-config::Mission with_min_height(config::Mission mission, std::vector<std::string>& raised) {
-  for (Vec3& waypoint : mission.waypoints) {
-    if (waypoint.z() >= mission.min_height) continue;
-    raised.push_back("a waypoint at " + base::metres(waypoint.z()) + " is raised to min_height " +
-                     base::metres(mission.min_height));
-    waypoint.z() = mission.min_height;
-  }
-  return mission;
+// Why it may not take off there; empty: it may.
+std::string outside_fence(const planner::base::Box& fence, const vehicle::VehicleState& state) {
+  const Vec3& here = state.motion.value.position;
+  const bool inside =
+      here.x() >= fence.min.x() && here.x() <= fence.max.x() && here.y() >= fence.min.y() && here.y() <= fence.max.y();
+  if (state.in_air || inside) return {};
+  return "the vehicle stands outside the geofence, at east " + base::metres(here.x(), 1) + ", north " +
+         base::metres(here.y(), 1);
 }
 
 }  // namespace
 
 Companion::Companion(const config::Mission& mission, const config::Settings& settings, CompanionParts parts)
-    : mission_(with_min_height(mission, raised_)),
+    : given_(mission),
+      mission_(mission),
       settings_(settings),
       link_(parts.link),
       supervisor_(mission, supervisor_settings(settings.companion)),
@@ -44,7 +46,6 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       route_(mission_.waypoints) {}
 
 bool Companion::step(double now) {
-  for (const std::string& low : std::exchange(raised_, {})) reporter_.event(now, "raised", low);
   const double dt = std::max(0.0, now - last_step_.value_or(now));
   notice_stall(now);
   take_state(now);
@@ -57,7 +58,10 @@ bool Companion::step(double now) {
     if (!supervisor_.arrived()) reporter_.flown(now, state);
     motion_.observe(now, state);
   }
+  const bool waited = supervisor_.phase() == supervisor::Phase::kWaiting;
+  if (waited) place_mission();
   const supervisor::Decision decision = supervisor_.update(now, state, context(now));
+  if (waited && supervisor_.phase() == supervisor::Phase::kEngaging) tell_heights(now);
   reporter_.hazard_lasts(now, supervisor_.hazard());
   move(now, dt, decision);
   if (team::Team* team = intake_.team()) {
@@ -93,7 +97,39 @@ void Companion::take_state(double now) {
     supervisor_.stop(now, supervisor::Outcome::kAborted, "the autopilot began anew: its local frame may be another");
   if (!change.shift) return;
   motion_.shift(*change.shift);
+  place_mission();
   reporter_.estimate_reset(now, *change.shift);
+}
+
+// Its heights are those of the local frame, in which the ground jumps with the estimate.
+void Companion::place_mission() {
+  const auto& origin = intake_.state().origin;
+  mission_ = config::in_local_frame(given_, intake_.ground().value_or(0.0), origin ? origin->altitude_m : 0.0);
+  raised_.clear();
+  misplaced_ = outside_fence(mission_.geofence, intake_.state());
+  for (Vec3& waypoint : mission_.waypoints) {
+    const double height = waypoint.z() - mission_.ground;
+    if (waypoint.z() >= mission_.min_height) continue;
+    waypoint.z() = mission_.min_height;
+    raised_.push_back("a waypoint at " + base::metres(height) + " is raised to min_height " +
+                      base::metres(given_.min_height));
+    if (given_.heights != config::Heights::kGround && height < 0.0) {
+      misplaced_ = "a waypoint is " + base::metres(-height, 1) + " under the ground";
+    } else if (waypoint.z() > mission_.geofence.max.z()) {
+      misplaced_ = raised_.back() + ", above the geofence's top";
+    }
+  }
+  route_.place(mission_.waypoints);
+  motion_.place();
+}
+
+void Companion::tell_heights(double now) {
+  if (!intake_.ground()) {
+    reporter_.event(now, "ground", "not known: the autopilot tells no home; heights count from its local origin");
+  } else if (std::abs(mission_.ground) > kFlat) {
+    reporter_.event(now, "ground", "at " + base::metres(mission_.ground) + " in the autopilot's local frame");
+  }
+  for (const std::string& text : raised_) reporter_.event(now, "raised", text);
 }
 
 void Companion::take_tracks(double now) {
@@ -122,6 +158,9 @@ supervisor::FlightContext Companion::context(double now) {
   context.newest_plan = planning_.newest_plan();
   context.lost_writers = intake_.lost_writers(now, supervisor_.flight_began().has_value());
   context.unsent_for = motion_.unsent_for(now);
+  context.misplaced = misplaced_;
+  context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;
+  context.low = state.motion.value.position.z() < mission_.min_height - kLow;
   context.at_takeoff_height = motion_.at_takeoff_height(state);
   if (supervisor_.phase() == supervisor::Phase::kFlying && route_.pass(state.motion.value.position))
     reporter_.event(now, "waypoint",

@@ -55,9 +55,13 @@ class Companion {
   [[nodiscard]] supervisor::FlightContext context(double now);
   void move(double now, double dt, const supervisor::Decision& decision);
   void stop_without_planner(double now);
+  void place_mission();
+  void tell_heights(double now);
 
-  std::vector<std::string> raised_;  // waypoints, which the first step tells
-  config::Mission mission_;
+  config::Mission given_;            // as it was written
+  config::Mission mission_;          // in the local frame, see place_mission
+  std::vector<std::string> raised_;  // of mission_'s waypoints, in words
+  std::string misplaced_;            // why mission_ cannot be flown; empty: it can
   config::Settings settings_;
   vehicle::VehicleLink& link_;
   supervisor::Supervisor supervisor_;

@@ -23,6 +23,14 @@ Intake::FrameChange Intake::take_state() {
   change.rebooted = std::exchange(reboots_, state_.reboots) != state_.reboots;
   if (std::exchange(estimate_resets_, state_.estimate_resets) != state_.estimate_resets)
     change.shift = state_.estimate_shift - std::exchange(estimate_shift_, state_.estimate_shift);
+  if (change.rebooted) ground_.reset();
+  if (change.shift && ground_) *ground_ += change.shift->z();
+  const bool stands = state_.landed_state_known && !state_.in_air && !state_.armed;
+  if (stands && state_.local_position_ok) {
+    ground_ = state_.motion.value.position.z();
+  } else if (!ground_) {
+    ground_ = state_.home_height;
+  }
   return change;
 }
 

@@ -33,6 +33,8 @@ class Intake {
   void listen_to_team(double now);
 
   [[nodiscard]] const vehicle::VehicleState& state() const { return state_; }
+  /// Height of the ground in the local frame: where the vehicle stood last, or else its home's; none: not known.
+  [[nodiscard]] std::optional<double> ground() const { return ground_; }
   /// Sum of the jumps so far.
   [[nodiscard]] const Vec3& estimate_shift() const { return estimate_shift_; }
   [[nodiscard]] tracking::TrackTable& table() { return table_; }
@@ -54,6 +56,7 @@ class Intake {
   std::uint32_t estimate_resets_ = 0;  // that have been told
   std::uint32_t reboots_ = 0;          // likewise
   Vec3 estimate_shift_ = Vec3::Zero();
+  std::optional<double> ground_;
   int most_writers_ = 0;  // live at once in this flight
 };
 

@@ -25,6 +25,8 @@ class MotionControl {
   MotionControl(const config::Mission& mission, const config::Settings& settings, vehicle::VehicleLink& link,
                 const base::Clock* clock, FlightReporter& reporter);
 
+  /// The mission's heights have changed.
+  void place() { stream_.stay_in(flight_volume(mission_)); }
   /// Makes the reference that of the decision: the take-off point, a stay, a brake. Not for Motion::kNone.
   void steer(double now, supervisor::Decision::Motion motion, supervisor::Phase phase,
              const vehicle::VehicleState& state);

@@ -64,13 +64,13 @@ std::optional<PlanResult> Planning::take(double now) {
   return result;
 }
 
-// From where the path ends straight down to height 0, as far ahead as plans look.
+// From where the path ends straight down to the ground, as far ahead as plans look.
 bool Planning::lands_free(const PlanResult& result) const {
   const planner::base::HorizonSettings& horizon = settings_.horizon;
   const prediction::Obstacles obstacles = obstacles_of(result.job, horizon);
   planner::base::TimedPath path = result.plan.path;
   const planner::base::TimedPoint above = path.back();
-  const double sinking = std::max(0.1, above.position.z() / kSinking);
+  const double sinking = std::max(0.1, (above.position.z() - mission_.ground) / kSinking);
   const Vec3 below = above.position - Vec3(0.0, 0.0, kSinking * sinking);
   path.push_back({above.t + sinking, below, Vec3::Zero(), Vec3::Zero()});
   path.push_back({std::max(horizon.time, above.t + sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()});

@@ -149,10 +149,11 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
 void FlightReporter::announce_phase(double now, const supervisor::Supervisor& supervisor,
                                     const vehicle::VehicleState& state) {
   if (!changed(said_.phase, supervisor.phase())) return;
-  const double start = state.motion.value.position.z() + (state.in_air ? 0.0 : mission_.takeoff_height);
-  if (said_.phase == supervisor::Phase::kEngaging && start < mission_.min_height - kLowStart)
-    event(now, "raised",
-          "a start at " + base::metres(start) + " is raised to min_height " + base::metres(mission_.min_height));
+  const double above_ground = state.motion.value.position.z() - mission_.ground;
+  const double start = above_ground + (state.in_air ? 0.0 : mission_.takeoff_height);
+  const double least = mission_.min_height - mission_.ground;
+  if (said_.phase == supervisor::Phase::kEngaging && start < least - kLowStart)
+    event(now, "raised", "a start at " + base::metres(start) + " is raised to min_height " + base::metres(least));
   std::string detail(supervisor::to_string(said_.phase));
   if (supervisor.done())
     detail += ": " + std::string(supervisor::to_string(supervisor.outcome())) + ", " + supervisor.reason();

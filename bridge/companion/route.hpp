@@ -20,6 +20,8 @@ class Route {
   static constexpr double kGain = 0.5;          ///< m, that count as nearer
 
   explicit Route(std::vector<Vec3> waypoints) : waypoints_(std::move(waypoints)) {}
+  /// The same waypoints elsewhere.
+  void place(std::vector<Vec3> waypoints) { waypoints_ = std::move(waypoints); }
 
   /// The waypoint flown to.
   [[nodiscard]] const Vec3& target() const { return waypoints_[next_]; }

@@ -39,9 +39,10 @@ Check inspect_position(const config::Mission& mission, const LinkFindings& heard
             "wait for GPS or another position source"};
   }
   if (!s.in_air && std::abs(s.motion.value.position.z()) > kGroundHeight) {
-    return {Level::kWarning, "local position",
-            where + fmt::format(": on the ground at {:.1f} m above the local origin", s.motion.value.position.z()),
-            "heights in the mission count from the local origin: restart the autopilot here, or reckon with it"};
+    return {
+        mission.heights == config::Heights::kOrigin ? Level::kWarning : Level::kOk, "local position",
+        where + fmt::format(": on the ground at {:.1f} m above the local origin", s.motion.value.position.z()),
+        mission.heights == config::Heights::kOrigin ? "heights in the mission count from there: heights: origin" : ""};
   }
   return {Level::kOk, "local position", where, ""};
 }
@@ -125,8 +126,16 @@ void inspect_waypoints(const config::Mission& mission, const vehicle::VehicleSta
   if (raised > 0) {
     checks.push_back({Level::kWarning, "min_height",
                       fmt::format("{} waypoint{} below {:g} m will be raised to it", raised, raised == 1 ? "" : "s",
-                                  mission.min_height),
+                                  mission.min_height - mission.ground),
                       "raise them in the mission, or lower min_height"});
+  }
+  if (mission.heights == config::Heights::kGround) return;
+  for (const Vec3& waypoint : mission.waypoints) {
+    if (waypoint.z() >= mission.ground) continue;
+    checks.push_back({Level::kFault, "heights",
+                      fmt::format("a waypoint is {:.1f} m under the ground", mission.ground - waypoint.z()),
+                      "check what the mission's heights are above: ground, origin or amsl"});
+    return;
   }
 }
 
@@ -141,9 +150,17 @@ std::vector<Check> inspect_mission(const config::Mission& mission, const LinkFin
                                                  : std::string("no aircraft: an empty sky, or no receiver"),
                       ""});
   }
-  if (!heard.state.motion.heard()) return checks;
-  checks.push_back(inspect_fence(mission, heard.state));
-  inspect_waypoints(mission, heard.state, checks);
+  const vehicle::VehicleState& state = heard.state;
+  if (!state.motion.heard()) return checks;
+  if (mission.heights == config::Heights::kSea && !state.origin) {
+    checks.push_back({Level::kFault, "heights", "above the sea, and the local origin's is not told",
+                      "wait for a GPS fix, or let the mission's heights count from the ground"});
+    return checks;
+  }
+  const double ground = state.in_air ? state.home_height.value_or(0.0) : state.motion.value.position.z();
+  const config::Mission placed = config::in_local_frame(mission, ground, state.origin ? state.origin->altitude_m : 0.0);
+  checks.push_back(inspect_fence(placed, state));
+  inspect_waypoints(placed, state, checks);
   return checks;
 }
 

@@ -30,6 +30,7 @@ void AutopilotTelemetry::restarted() {
   resets_.restart();
   position_boot_ms_.reset();
   state_.origin.reset();
+  state_.home_height.reset();
   state_.armable = false;
   state_.landed_state_known = false;
   sys_status_heard_ = false;
@@ -147,6 +148,10 @@ void AutopilotTelemetry::on(const BatteryStatus& message) {
 
 void AutopilotTelemetry::on(const Origin& message) {
   state_.origin = message.place;
+}
+
+void AutopilotTelemetry::on(const Home& message) {
+  state_.home_height = message.height;
 }
 
 void AutopilotTelemetry::on(const AutopilotVersion& message) {

@@ -75,6 +75,7 @@ class AutopilotTelemetry {
   void on(const EstimatorStatus& message);
   void on(const BatteryStatus& message);
   void on(const Origin& message);
+  void on(const Home& message);
   void on(const AutopilotVersion& message);
   void on(const StatusText& message);
   /// A message that could not be decoded.
@@ -89,6 +90,7 @@ class AutopilotTelemetry {
   /// Of the newest heartbeat; negative: none.
   [[nodiscard]] double heartbeat_stamp() const { return state_.heartbeat_stamp; }
   [[nodiscard]] bool origin_known() const { return state_.origin.has_value(); }
+  [[nodiscard]] bool home_known() const { return state_.home_height.has_value(); }
 
   /// At most kNotices wait; the oldest go.
   void notice(std::string name, std::string detail);

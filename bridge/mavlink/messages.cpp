@@ -144,6 +144,11 @@ bool read(const json& fields, Origin& message) {
          std::abs(place.altitude_m) <= Limits::kPosition;
 }
 
+bool read(const json& fields, Home& message) {
+  message.height = -number(fields, "z");
+  return std::abs(message.height) <= Limits::kPosition;
+}
+
 bool read(const json& fields, CommandAck& message) {
   std::uint32_t command = 0;
   std::uint32_t result = 0;
@@ -210,6 +215,7 @@ constexpr std::array<std::pair<std::string_view, Decoder>, std::variant_size_v<M
     {"ESTIMATOR_STATUS", decode_as<EstimatorStatus>},
     {"BATTERY_STATUS", decode_as<BatteryStatus>},
     {"GPS_GLOBAL_ORIGIN", decode_as<Origin>},
+    {"HOME_POSITION", decode_as<Home>},
     {"COMMAND_ACK", decode_as<CommandAck>},
     {"AUTOPILOT_VERSION", decode_as<AutopilotVersion>},
     {"PING", decode_as<Ping>},

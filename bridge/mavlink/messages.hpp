@@ -75,6 +75,10 @@ struct BatteryStatus {
 struct Origin {
   frames::Geodetic place;
 };
+/// HOME_POSITION, in the local frame.
+struct Home {
+  double height = 0.0;  ///< ENU z
+};
 struct CommandAck {
   std::uint16_t command = 0;
   int result = 0;                   ///< MAV_RESULT
@@ -104,8 +108,8 @@ struct StatusText {
 
 /// AdsbReport: its time and sender are the caller's to fill in.
 using Message = std::variant<Heartbeat, CurrentMode, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState,
-                             EstimatorStatus, BatteryStatus, Origin, CommandAck, AutopilotVersion, Ping, ParamValue,
-                             StatusText, AdsbReport>;
+                             EstimatorStatus, BatteryStatus, Origin, Home, CommandAck, AutopilotVersion, Ping,
+                             ParamValue, StatusText, AdsbReport>;
 
 /// Decodes the message `name` (MAVLink's name) from `json`, an object with a member for each field. Nothing where the
 /// name is none of these, the text is no such object, or a field that matters is missing, not finite or beyond Limits.

@@ -112,7 +112,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
       join_system();
-      static constexpr std::array<Interest, 16> kInterests{{{"HEARTBEAT"},
+      static constexpr std::array<Interest, 17> kInterests{{{"HEARTBEAT"},
                                                             {"CURRENT_MODE"},
                                                             {"LOCAL_POSITION_NED"},
                                                             {"ATTITUDE"},
@@ -122,6 +122,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
                                                             {"ESTIMATOR_STATUS"},
                                                             {"BATTERY_STATUS"},
                                                             {"GPS_GLOBAL_ORIGIN"},
+                                                            {"HOME_POSITION"},
                                                             {"COMMAND_ACK"},
                                                             {"AUTOPILOT_VERSION"},
                                                             {"PING"},

@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint32_t kMessageAttitude = 30;  // message ids of common.xml
 constexpr std::uint32_t kMessageLocalPosition = 32;
 constexpr std::uint32_t kMessageOrigin = 49;
+constexpr std::uint32_t kMessageHome = 242;
 constexpr std::uint32_t kMessageVersion = 148;
 constexpr std::uint32_t kMessageOdometry = 331;
 constexpr std::uint32_t kMessageCurrentMode = 436;
@@ -84,6 +85,7 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
   if (sender.system != system_id_) return on_other_heartbeat(sender, message);
   std::array<bool, kStreams> slow{};
   bool want_origin = false;
+  bool want_home = false;
   bool want_version = false;
   {
     const std::scoped_lock lock(mutex_);
@@ -99,11 +101,13 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     tally(kHeartbeat, now);
     at_heartbeat_ = heard_;
     want_origin = !telemetry_.origin_known();
+    want_home = !telemetry_.home_known();
     want_version = !telemetry_.info().version;
   }
   if (!ready_) return;
   request_streams(slow);
   if (want_origin) (void)transmit(vehicle::px4::request_message(kMessageOrigin));
+  if (want_home) (void)transmit(vehicle::px4::request_message(kMessageHome));
   if (want_version) (void)transmit(vehicle::px4::request_message(kMessageVersion));
   ping(now);
 }

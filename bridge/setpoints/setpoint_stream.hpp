@@ -40,6 +40,9 @@ class SetpointStream {
   /// Moves all that is followed: the autopilot's estimate jumped by that, the vehicle did not move.
   void shift(const Vec3& by);
 
+  /// Brakes are to end in `volume` from now on.
+  void stay_in(const planner::base::Box& volume) { settings_.volume = volume; }
+
   /// Where the vehicle is to be at time t. Precondition: active().
   [[nodiscard]] planner::base::TimedPoint reference(double t) const;
   /// The setpoint to send at `now`, heading `yaw`. Its velocity is by how much the estimate of the velocity is off

@@ -42,6 +42,7 @@ struct Waiting {
   static constexpr Phase kPhase = Phase::kWaiting;
   MissingPeer absent = MissingPeer::kNone;  ///< who is waited for; kNone: the autopilot's health
   std::optional<double> since;              ///< for that; none: before the first step
+  std::optional<double> ready_since{};      ///< but for the ground's height
 };
 struct Engaging {
   static constexpr Phase kPhase = Phase::kEngaging;

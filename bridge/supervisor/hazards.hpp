@@ -24,8 +24,11 @@ struct SupervisorSettings {
 struct FlightContext {
   std::optional<double> newest_tracks;  ///< reception of the newest track message
   std::optional<double> newest_plan;    ///< when the newest plan was made
-  int lost_writers = 0;     ///< writers of tracks that were live in this flight and are silent, not replaced
-  double unsent_for = 0.0;  ///< s, for which setpoints could not be handed to the transport
+  int lost_writers = 0;      ///< writers of tracks that were live in this flight and are silent, not replaced
+  double unsent_for = 0.0;   ///< s, for which setpoints could not be handed to the transport
+  std::string misplaced;     ///< why the mission cannot be flown from where the vehicle is; empty: it can
+  bool ground_known = true;  ///< its height, if the mission counts from it
+  bool low = false;          ///< clearly under min_height
   bool at_takeoff_height = false;
   bool at_target = false;                        ///< within the arrival tolerance of the last waypoint, slow
   bool leaves_target = false;                    ///< no plan stays there: it does not stay free

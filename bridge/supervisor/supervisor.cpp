@@ -12,7 +12,7 @@ namespace {
 constexpr double kSettling = 0.3;       // s, within which a request acts; PX4 takes up to 15 ms
 constexpr double kReadyAgain = 10.0;    // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;  // s
-constexpr double kLow = 0.3;            // m, below min_height: less is noise
+constexpr double kHomeTimeout = 3.0;    // s; PX4 tells its home every 2 s
 
 using Motion = Decision::Motion;
 
@@ -89,6 +89,8 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     waiting_for_ = "the autopilot to be ready: " +
                    (!state.health.empty() ? state.health
                                           : std::string(state.landed_state_known ? "local position" : "landed state"));
+  } else if (mission_.heights == config::Heights::kSea && !state.origin) {
+    waiting_for_ = "the local origin's height above the sea";
   } else if (state.battery == vehicle::BatteryState::kLow || state.battery == vehicle::BatteryState::kCritical) {
     waiting_for_ = "a charged battery: it is " + std::string(vehicle::to_string(state.battery));
   }
@@ -97,27 +99,24 @@ MissingPeer Supervisor::find_missing(const Input& in) {
 
 Decision Supervisor::step(Waiting& phase, const Input& in) {
   const MissingPeer absent = find_missing(in);
+  if (waiting_for_.empty() && !in.flight.ground_known) {
+    if (!phase.ready_since) phase.ready_since = in.now;
+    if (in.now - *phase.ready_since < kHomeTimeout) waiting_for_ = "the autopilot's home, to know where the ground is";
+  }
   if (waiting_for_.empty()) {
-    if (!in.state.in_air && outside_fence(in.state.motion.value.position)) {
-      abort("the vehicle stands outside the geofence, at east " + base::metres(in.state.motion.value.position.x(), 1) +
-            ", north " + base::metres(in.state.motion.value.position.y(), 1));
+    if (!in.flight.misplaced.empty()) {
+      abort(in.flight.misplaced);
       return {};
     }
     mode_changes_.engage(in.state);
     phase_ = Engaging{};
     return {Motion::kStay, {}};
   }
-  if (!phase.since || absent != phase.absent) phase = {absent, in.now};
+  if (!phase.since || absent != phase.absent) phase = {absent, in.now, phase.ready_since};
   const bool peer = absent != MissingPeer::kNone;
   if (in.now - *phase.since > (peer ? settings_.peer_timeout : settings_.health_timeout))
     phase_ = Done{{Outcome::kAborted, "waited in vain for " + waiting_for_, {}}, absent};
   return {};
-}
-
-// Beside the volume that the vehicle may fly in.
-bool Supervisor::outside_fence(const Vec3& p) const {
-  const planner::base::Box& box = mission_.geofence;
-  return p.x() < box.min.x() || p.x() > box.max.x() || p.y() < box.min.y() || p.y() > box.max.y();
 }
 
 Decision Supervisor::step(Engaging& phase, const Input& in) {
@@ -127,8 +126,7 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
     waiting_for_.clear();
     flight_began_ = now;
     // One that was taken over while it sank climbs first, too.
-    const bool low = state.motion.value.position.z() < mission_.min_height - kLow;
-    phase_ = state.in_air && !low ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
+    phase_ = state.in_air && !flight.low ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
     return decision;
   }
   if (phase.request.exhausted(now, state)) {

@@ -87,7 +87,6 @@ class Supervisor {
   bool brakes_for_hazard(const Input& in, std::optional<double> following_since = {});
   /// What a flight cannot begin without, into waiting_for_; returns whom that is about.
   MissingPeer find_missing(const Input& in);
-  [[nodiscard]] bool outside_fence(const Vec3& position) const;
 
   config::Mission mission_;
   SupervisorSettings settings_;

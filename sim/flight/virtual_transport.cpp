@@ -191,6 +191,7 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.motion.value = {motion.position, motion.velocity};
   state.position_sigma = bridge::vehicle::px4::position_sigma(autopilot_.estimator().horizontal_accuracy(),
                                                               autopilot_.estimator().vertical_accuracy());
+  state.home_height = 0.0;  // a scenario's heights count from its origin, wherever its ground is
   state.yaw = motion.yaw;
   state.armable = autopilot_.prearm_ok();
   state.local_position_ok = autopilot_.position_valid();

@@ -48,6 +48,36 @@ TEST(LoadMission, ReadsEveryKey) {
   EXPECT_EQ(m.time_limit, 120.0);
 }
 
+TEST(LoadMission, HeightsAreAboveWhatItSays) {
+  const Folder folder;
+  const std::string head =
+      "format: jink-mission/1\nname: m\nconnection: udpin://:14540\nvehicle: px4\nwaypoints: [[1, 2, 488.5]]\n";
+  EXPECT_EQ(load_mission(folder.write("m.yaml", head)).heights, Heights::kGround);
+  EXPECT_EQ(load_mission(folder.write("m.yaml", head + "heights: origin\n")).heights, Heights::kOrigin);
+  // What is above the sea says nothing of min_height here.
+  const Mission m = load_mission(folder.write(
+      "m.yaml", head + "heights: amsl\nmin_height: 900\ngeofence: {min: [-9, -9, 480], max: [9, 9, 500]}\n"));
+  EXPECT_EQ(m.heights, Heights::kSea);
+  EXPECT_EQ(m.waypoints[0].z(), 488.5);
+}
+
+TEST(LoadMission, ALocalFrameHasHeightsOfItsOwn) {
+  Mission given;
+  given.waypoints = {{1, 2, 5}};
+  given.geofence = {{-9, -9, 0}, {9, 9, 20}};
+  const auto heights = [&](Heights above) {
+    given.heights = above;
+    const Mission m = in_local_frame(given, 3.0, 488.0);
+    EXPECT_EQ(m.min_height, 4.0);
+    EXPECT_EQ(m.ground, 3.0);
+    EXPECT_EQ(m.geofence.max.z() - m.waypoints[0].z(), 15.0);
+    return m.waypoints[0].z();
+  };
+  EXPECT_EQ(heights(Heights::kGround), 8.0);
+  EXPECT_EQ(heights(Heights::kOrigin), 5.0);
+  EXPECT_EQ(heights(Heights::kSea), -483.0);
+}
+
 TEST(LoadMission, FillsInWhatIsOptional) {
   const Folder folder;
   const Mission m =

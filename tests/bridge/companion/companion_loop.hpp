@@ -65,6 +65,7 @@ struct Loop {
   }
   Loop& airborne(const Vec3& position = {0, 0, 2}) {
     link.telemetry.in_air = link.telemetry.armed = true;
+    link.telemetry.home_height = 0.0;
     link.telemetry.motion.value.position = position;
     return *this;
   }

@@ -230,6 +230,13 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
   EXPECT_EQ(of_mission("geofence", [](Mission& m) { m.waypoints = {{60.0, 0.0, 2.0}}; }).level, Level::kFault);
   EXPECT_EQ(of_mission("min_height", [](Mission& m) { m.waypoints[0].z() = 0.0; }).finding,
             "1 waypoint below 1 m will be raised to it");
+  EXPECT_EQ(of_mission("heights",
+                       [](Mission& m) {
+                         m.heights = config::Heights::kSea;
+                         m.geofence = {};
+                       })
+                .finding,
+            "a waypoint is 486.5 m under the ground");
   EXPECT_EQ(of_mission("ADS-B", [](Mission&) {}).level, Level::kOk);
   EXPECT_EQ(of_mission("waypoints", [](Mission& m) { m.time_limit = 5.0; }).level, Level::kFault);
   EXPECT_EQ(of_mission("waypoints",

@@ -83,6 +83,16 @@ TEST(AutopilotTelemetry, AnOlderPositionIsLeftOutAndTimeThatBeganAnewIsAReboot) 
   EXPECT_EQ(notice->name, "autopilot_rebooted");
 }
 
+TEST(AutopilotTelemetry, HomeIsKnownUntilTheFrameMayBeAnother) {
+  AutopilotTelemetry telemetry;
+  EXPECT_FALSE(telemetry.state(1.0).home_height);
+  telemetry.on(Home{3.0});
+  EXPECT_TRUE(telemetry.on(10.0, LocalPosition{60000, Vec3(1, 0, 0), Vec3::Zero()}));
+  EXPECT_EQ(telemetry.state(10.0).home_height, 3.0);
+  EXPECT_TRUE(telemetry.on(10.2, LocalPosition{500, Vec3(0, 0, 0), Vec3::Zero()}));
+  EXPECT_FALSE(telemetry.state(10.2).home_height);
+}
+
 TEST(AutopilotTelemetry, AComponentThatIsNoAutopilotSaysNothing) {
   AutopilotTelemetry telemetry;
   EXPECT_FALSE(telemetry.on(1.0, Heartbeat{vehicle::px4::kAutopilotInvalid, vehicle::px4::kArmedFlag, 0, 0}));

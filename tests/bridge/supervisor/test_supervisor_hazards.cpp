@@ -236,18 +236,23 @@ TEST(Supervisor, DoesNotBeginWithALowBattery) {
   EXPECT_NE(flight.supervisor.reason().find("charged battery: it is low"), std::string::npos);
 }
 
-TEST(Supervisor, DoesNotBeginOutsideTheGeofence) {
-  config::Mission m = Flight::mission();
-  m.geofence = {{-5, -5, 0}, {30, 5, 10}};
-  for (const bool outside : {false, true}) {
-    Flight flight(m);
-    flight.state.motion.value.position = {outside ? -6.0 : -4.0, 0, 0};
-    flight.turn();
-    EXPECT_EQ(flight.supervisor.done(), outside);
-    if (!outside) continue;
-    EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
-    EXPECT_NE(flight.supervisor.reason().find("outside the geofence, at east -6.0 m"), std::string::npos);
-  }
+TEST(Supervisor, DoesNotBeginAMissionThatCannotBeFlownFromThere) {
+  Flight flight;
+  flight.context.misplaced = "a waypoint is under the ground";
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+  EXPECT_EQ(flight.supervisor.reason(), "a waypoint is under the ground");
+  EXPECT_TRUE(flight.requests.empty());
+}
+
+TEST(Supervisor, WaitsAMomentForTheHeightOfTheGround) {
+  Flight flight;
+  flight.context.ground_known = false;
+  flight.run(2.9);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kWaiting);
+  EXPECT_NE(flight.supervisor.waiting_for().find("home"), std::string::npos);
+  flight.run(0.3);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
 }
 
 }  // namespace

@@ -258,7 +258,7 @@ TEST(Supervisor, EngagesInTheAirWithoutTakeoffAndWithoutArming) {
 TEST(Supervisor, WhatIsTakenOverBelowTheLowestHeightClimbsFirst) {
   Flight flight;
   flight.state.in_air = flight.state.armed = true;
-  flight.state.motion.value.position.z() = 0.5;
+  flight.context.low = true;
   flight.engage();
   flight.turn();
   flight.state.mode = vehicle::FlightMode::kOffboard;

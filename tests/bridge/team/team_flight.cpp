@@ -35,6 +35,7 @@ class Link final : public vehicle::VehicleLink {
     state.armable = autopilot_.prearm_ok();
     state.local_position_ok = true;
     state.in_air = autopilot_.landed_state() != sim::vehicle::LandedState::kOnGround;
+    state.home_height = autopilot_.home().z() - vehicle_.origin.z();
     state.origin = origin_;
     state.system_id = vehicle_.system_id;
     return state;

@@ -340,6 +340,7 @@ struct TeamCompanion {
       state.motion.value.position = {0, 0, 5};
       state.heartbeat_stamp = t;
       state.armed = state.armable = state.local_position_ok = true;
+      state.home_height = 0.0;
       state.mode = t > from + 0.1 ? vehicle::FlightMode::kOffboard : vehicle::FlightMode::kHold;
       companion->step(t);
     }
