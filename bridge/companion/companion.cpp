@@ -12,6 +12,8 @@ namespace {
 constexpr double kStall = 0.2;      // s between two turns of the loop, which is to be said
 constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
 constexpr double kLow = 0.3;        // m, below min_height: less is noise
+constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
+constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
 constexpr double kFlat = 0.05;      // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
@@ -138,11 +140,12 @@ void Companion::take_tracks(double now) {
   reporter_.tracks(now, intake_.table().predict(now, settings_.horizon.acceleration_trust));
 }
 
+// A plan for something else than what is flown now was begun before that changed.
 void Companion::take_plan(double now) {
-  std::optional<PlanResult> result = planning_.take(now);
+  std::optional<PlanResult> result = planning_.take(now, end());
   stop_without_planner(now);
-  const bool wanted = supervisor_.phase() == supervisor::Phase::kFlying && supervisor_.hazard().empty();
-  if (result && !result->plan.path.empty() && wanted) motion_.follow(std::move(*result), intake_.estimate_shift());
+  if (result && !result->plan.path.empty() && result->job.goal == goal_)
+    motion_.follow(std::move(*result), intake_.estimate_shift());
 }
 
 // The vehicle is not left with the last setpoint because planning broke down: it brakes and gets HOLD.
@@ -161,12 +164,16 @@ supervisor::FlightContext Companion::context(double now) {
   context.misplaced = misplaced_;
   context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;
   context.low = state.motion.value.position.z() < mission_.min_height - kLow;
+  const bool may_take_off =
+      supervisor_.phase() == supervisor::Phase::kWaiting || supervisor_.phase() == supervisor::Phase::kEngaging;
+  context.overhead_free = !may_take_off || state.in_air || overhead_free(now);
   context.at_takeoff_height = motion_.at_takeoff_height(state);
   if (supervisor_.phase() == supervisor::Phase::kFlying && route_.pass(state.motion.value.position))
     reporter_.event(now, "waypoint",
                     std::to_string(route_.passed()) + " of " + std::to_string(route_.size()) + " passed");
   context.at_target = route_.arrived(state.motion.value.position, state.motion.value.velocity);
-  context.leaves_target = !planning_.stays_at_target();
+  context.at_end = Route::at(end(), state.motion.value.position, state.motion.value.velocity);
+  context.leaves_end = !planning_.stays_at_end();
   context.at_rest = state.motion.value.velocity.norm() < Route::kArrivalSpeed;
   while (auto report = link_.next_report()) {
     reporter_.event(
@@ -179,17 +186,66 @@ supervisor::FlightContext Companion::context(double now) {
 
 void Companion::move(double now, double dt, const supervisor::Decision& decision) {
   using Motion = supervisor::Decision::Motion;
+  goal_.reset();
   if (decision.motion == Motion::kNone) return;
   const vehicle::VehicleState& state = intake_.state();
+  // What is far from where it was to stop goes on from where it is.
+  if (decision.motion != Motion::kBrake && motion_.stop_point() && motion_.lost(now, state)) stop(now);
   motion_.steer(now, decision.motion, supervisor_.phase(), state);
-  const bool flying = supervisor_.phase() == supervisor::Phase::kFlying;
-  // While a hazard lasts the planner goes on: when it has passed there is a plan to follow.
-  if (flying && (decision.motion == Motion::kFollow || decision.motion == Motion::kBrake)) {
-    planning_.start(now, intake_, motion_, route_, !supervisor_.arrived());
+  if (decision.motion == Motion::kBrake) stop(now);
+  goal_ = goal_kind(decision.motion);
+  if (goal_ && planning_.due(now, *goal_)) {
+    planning_.start(now, intake_, motion_, goal(now, *goal_));
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;
   motion_.send(now, dt, state, turns ? std::optional(route_.target()) : std::nullopt);
+}
+
+// Plans to the stop's end take over from the stop, as long as they come; where they do not, it is looked at again.
+void Companion::stop(double now) {
+  const bool again = planning_.late(now) && now - stop_looked_at_ > kLookAgain;
+  const auto start = motion_.stop_start(now, intake_.state(), again);
+  if (!start) return;
+  // Nothing is evaded from the ground.
+  motion_.stop(intake_.state().in_air ? planning_.stop(now, intake_, motion_, *start)
+                                      : motion_.stream().straight_stop(start->from));
+  stop_looked_at_ = now;
+}
+
+// None: nothing is planned. What stops on the ground, or has not left it yet, stays there.
+std::optional<Goal::Kind> Companion::goal_kind(supervisor::Decision::Motion motion) const {
+  using Motion = supervisor::Decision::Motion;
+  if (motion == Motion::kFollow) return Goal::Kind::kWaypoint;
+  if (!intake_.state().in_air) return std::nullopt;
+  if (motion == Motion::kBrake) return Goal::Kind::kStop;
+  const bool climbs = motion == Motion::kTakeoffPoint && supervisor_.phase() == supervisor::Phase::kClimbing;
+  return climbs ? std::optional(Goal::Kind::kClimb) : std::nullopt;
+}
+
+Goal Companion::goal(double now, Goal::Kind kind) {
+  if (kind == Goal::Kind::kStop) return {kind, *motion_.stop_point()};
+  if (kind == Goal::Kind::kClimb) return {kind, *motion_.takeoff_point()};
+  // Who has arrived stays.
+  if (supervisor_.arrived()) return {kind, end()};
+  return {kind, route_.target(), /*visit=*/true, route_.stuck(now, intake_.state().motion.value.position)};
+}
+
+// To land is to come down by plans as far as that goes: the autopilot's landing looks at no obstacles.
+Vec3 Companion::end() const {
+  Vec3 end = mission_.waypoints.back();
+  if (mission_.arrival == config::Arrival::kLand)
+    end.z() = std::min(end.z(), std::max(mission_.min_height, mission_.ground + kLandingHeight));
+  return end;
+}
+
+// To be asked before a take-off.
+bool Companion::overhead_free(double now) {
+  if (now - overhead_looked_at_ > kLookAgain) {
+    overhead_free_ = planning_.climbs_free(now, intake_);
+    overhead_looked_at_ = now;
+  }
+  return overhead_free_;
 }
 
 FlightSummary Companion::summary() const {

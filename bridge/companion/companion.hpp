@@ -55,6 +55,11 @@ class Companion {
   [[nodiscard]] supervisor::FlightContext context(double now);
   void move(double now, double dt, const supervisor::Decision& decision);
   void stop_without_planner(double now);
+  void stop(double now);
+  [[nodiscard]] Vec3 end() const;
+  [[nodiscard]] std::optional<Goal::Kind> goal_kind(supervisor::Decision::Motion motion) const;
+  [[nodiscard]] Goal goal(double now, Goal::Kind kind);
+  [[nodiscard]] bool overhead_free(double now);
   void place_mission();
   void tell_heights(double now);
 
@@ -71,6 +76,10 @@ class Companion {
   Planning planning_;
   Route route_;
   std::optional<double> last_step_;
+  std::optional<Goal::Kind> goal_;                // what is flown to; none: nothing by plans
+  double stop_looked_at_ = -planner::base::kInfinity;
+  double overhead_looked_at_ = -planner::base::kInfinity;
+  bool overhead_free_ = false;  // then
 };
 
 }  // namespace jink::bridge::companion

@@ -7,7 +7,8 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr int kMostMessages = 64;  // of tracks, in a turn
+constexpr int kMostMessages = 64;      // of tracks, in a turn
+constexpr double kMissedAfter = 0.5;  // of the time that tracks coast, of silence of a writer
 
 }  // namespace
 
@@ -42,6 +43,8 @@ bool Intake::take_tracks(double now) {
     table_.ingest(message);
     any = true;
   }
+  // Sooner than that is a hazard: by then the tracks would be forgotten.
+  table_.miss(most_writers_ > table_.live_writers(now, kMissedAfter * mission_.tracks.coast_s));
   if (any && state_.motion.silence(now) <= settings_.companion.stale_state)
     table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
   return any;

@@ -49,35 +49,47 @@ void MotionControl::steer(double now, Motion motion, supervisor::Phase phase, co
     takeoff_point_.reset();
     stream_.hold(state.motion.value.position, now);
   }
-  if (motion == Motion::kBrake) brake(now, state);
+  if (motion != Motion::kBrake) stop_point_.reset();
   if (!stream_.active()) stream_.hold(state.motion.value.position, now);
+}
+
+Vec3 climb_end(const config::Mission& mission, const vehicle::VehicleState& state) {
+  Vec3 end = state.motion.value.position;
+  const double height = state.in_air ? end.z() : end.z() + mission.takeoff_height;
+  end.z() = std::min(std::max(height, mission.min_height), std::max(mission.geofence.max.z(), end.z()));
+  return end;
 }
 
 void MotionControl::take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state) {
   if (!takeoff_point_ || phase == supervisor::Phase::kEngaging) {
-    const Vec3& position = state.motion.value.position;
-    const double height = state.in_air ? position.z() : position.z() + mission_.takeoff_height;
-    takeoff_point_ = position;
-    takeoff_point_->z() =
-        std::min(std::max(height, mission_.min_height), std::max(mission_.geofence.max.z(), position.z()));
+    takeoff_point_ = climb_end(mission_, state);
     stream_.hold(*takeoff_point_, now);
-  } else if (stream_.braking()) {  // a hazard of the climb has passed
+  } else if (stop_point_ && !state.in_air) {  // a hazard has passed; in the air plans lead on
     stream_.hold(*takeoff_point_, now);
   }
 }
 
-// Along the reference; but from the vehicle where the reference says nothing of its motion, in take-off and where it
-// was lost, and the vehicle's position is known.
-void MotionControl::brake(double now, const vehicle::VehicleState& state) {
-  if (stream_.braking()) return;
-  const bool known = state.motion.silence(now) <= settings_.companion.stale_state;
-  const bool says_nothing = !stream_.active() || stream_.plan(now).empty() || lost(state);
-  if (!known || !says_nothing) {
-    stream_.brake(now);
-    return;
-  }
-  stream_.brake(now,
-                planner::base::TimedPoint{now, state.motion.value.position, state.motion.value.velocity, Vec3::Zero()});
+std::optional<MotionControl::StopStart> MotionControl::stop_start(double now, const vehicle::VehicleState& state,
+                                                                 bool again) const {
+  const bool away = lost(now, state);
+  if (stop_point_ && !away && !again) return std::nullopt;
+  const bool says_nothing = away || (!stop_point_ && stream_.plan(now).empty());
+  if (says_nothing && known(now, state))
+    return StopStart{{now, state.motion.value.position, state.motion.value.velocity, Vec3::Zero()}, false};
+  return StopStart{stream_.reference(now)};
+}
+
+void MotionControl::stop(planner::base::TimedPath reference) {
+  stop_point_ = reference.back().position;
+  stream_.brake(std::move(reference));
+}
+
+bool MotionControl::known(double now, const vehicle::VehicleState& state) const {
+  return state.motion.silence(now) <= settings_.companion.stale_state;
+}
+
+bool MotionControl::lost(double now, const vehicle::VehicleState& state) const {
+  return known(now, state) && error(state) > kLostReference;
 }
 
 void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
@@ -130,7 +142,7 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
 }
 
 void MotionControl::observe(double now, const vehicle::VehicleState& state) {
-  if (!stream_.active() || state.motion.silence(now) > settings_.companion.stale_state) return;
+  if (!stream_.active() || !known(now, state)) return;
   stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity);
   const planner::base::TimedPoint reference = stream_.reference(state.motion.stamp);
   const Vec3 offset = state.motion.value.position - reference.position;
@@ -153,6 +165,7 @@ double MotionControl::share(double now) const {
 void MotionControl::shift(const Vec3& by) {
   stream_.shift(by);
   if (takeoff_point_) *takeoff_point_ += by;
+  if (stop_point_) *stop_point_ += by;
 }
 
 double MotionControl::error(const vehicle::VehicleState& state) const {

@@ -17,6 +17,8 @@ namespace jink::bridge::companion {
 
 /// Where a path may lead.
 [[nodiscard]] planner::base::Box flight_volume(const config::Mission& mission);
+/// Where a take-off from where the vehicle is leads to.
+[[nodiscard]] Vec3 climb_end(const config::Mission& mission, const vehicle::VehicleState& state);
 
 /// Moves the vehicle. What it refers to outlives it. Not thread-safe.
 class MotionControl {
@@ -27,9 +29,25 @@ class MotionControl {
 
   /// The mission's heights have changed.
   void place() { stream_.stay_in(flight_volume(mission_)); }
-  /// Makes the reference that of the decision: the take-off point, a stay, a brake. Not for Motion::kNone.
+  /// Makes the reference that of the decision: the take-off point, a stay. Not for Motion::kNone, and of a brake only
+  /// its end: stop() begins it.
   void steer(double now, supervisor::Decision::Motion motion, supervisor::Phase phase,
              const vehicle::VehicleState& state);
+  /// Where a stop begins.
+  struct StopStart {
+    planner::base::TimedPoint from;
+    bool on_reference = true;  ///< else where the vehicle is
+  };
+  /// From where the vehicle is to stop now: its reference, but where that says nothing of its motion (in take-off, and
+  /// where it was lost) and its position is known, from there. None while a stop is on, unless the vehicle is far from
+  /// it, as after a silence: it is not to come back. `again`: while one is on, too.
+  [[nodiscard]] std::optional<StopStart> stop_start(double now, const vehicle::VehicleState& state, bool again) const;
+  /// Stops along that reference at once.
+  void stop(planner::base::TimedPath reference);
+  /// Where the stop that is on ends; none: none is on.
+  [[nodiscard]] const std::optional<Vec3>& stop_point() const { return stop_point_; }
+  /// Where the climb of a take-off ends; none: there was none.
+  [[nodiscard]] const std::optional<Vec3>& takeoff_point() const { return takeoff_point_; }
   /// Follows a plan from its start, shifted by what the estimate has jumped since it was begun.
   void follow(PlanResult result, const Vec3& estimate_shift);
   /// Sends a setpoint where one is due. `dt`: since the last step; `towards`: where the vehicle is to look, where it
@@ -43,8 +61,8 @@ class MotionControl {
   [[nodiscard]] const setpoints::SetpointStream& stream() const { return stream_; }
   /// Distance from the reference. Precondition: the stream is active.
   [[nodiscard]] double error(const vehicle::VehicleState& state) const;
-  /// So far from its reference the vehicle has lost it.
-  [[nodiscard]] bool lost(const vehicle::VehicleState& state) const { return error(state) > kLostReference; }
+  /// So far from its reference the vehicle has lost it. Where it is not known where it is, it has not.
+  [[nodiscard]] bool lost(double now, const vehicle::VehicleState& state) const;
   /// The share of the stated acceleration and cruise speed that is asked for: less after each time that the reference
   /// was lost, for a vehicle that cannot follow, and slowly all again.
   [[nodiscard]] double share(double now) const;
@@ -60,7 +78,7 @@ class MotionControl {
  private:
   static constexpr double kLostReference = 1.2;  // m
   void take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state);
-  void brake(double now, const vehicle::VehicleState& state);
+  [[nodiscard]] bool known(double now, const vehicle::VehicleState& state) const;
   [[nodiscard]] double heading(double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
 
   /// The newest track in a plan whose first setpoint is still to be sent.
@@ -76,6 +94,7 @@ class MotionControl {
   FlightReporter& reporter_;
   setpoints::SetpointStream stream_;
   std::optional<Vec3> takeoff_point_;  // none: not taking off
+  std::optional<Vec3> stop_point_;
   setpoints::TrackingOffset offset_;
   bool was_lost_ = false;
   double share_ = 1.0;  // at lost_at_

@@ -18,6 +18,15 @@
 
 namespace jink::bridge::companion {
 
+/// What a plan is for.
+struct Goal {
+  enum class Kind { kWaypoint, kClimb, kStop };
+  Kind kind = Kind::kWaypoint;
+  Vec3 target = Vec3::Zero();  ///< where it leads to, local ENU, m
+  bool visit = false;          ///< PathRequest::visit
+  bool stuck = false;          ///< PathRequest::stuck
+};
+
 /// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
 struct PlanJob {
   planner::horizon::PathRequest request;  ///< `tracks` and `paths` are set by the task to what follows from the below
@@ -25,6 +34,7 @@ struct PlanJob {
   std::vector<prediction::Forecast> forecasts;      ///< of some of the tracks
   std::vector<planner::geometry::KnownPath> paths;  ///< of the team's other vehicles
   planner::base::TimedPath previous;                ///< times from `start` on
+  Goal::Kind goal = Goal::Kind::kWaypoint;
   std::uint64_t number = 0;
   double begun = 0.0;
   double start = 0.0;

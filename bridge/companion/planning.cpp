@@ -2,8 +2,13 @@
 #include "bridge/companion/planning.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
+#include <vector>
+
+#include "planner/horizon/path_check.hpp"
 
 namespace jink::bridge::companion {
 namespace {
@@ -14,6 +19,10 @@ constexpr double kInsetSigmas = 2.0;    // of the estimate's position, likewise
 constexpr double kSinking = 0.7;        // m/s, of a landing: PX4's MPC_LAND_SPEED by default
 constexpr double kRejoining = 1.0;      // m/s², at most, of the way back to a plan that is kept
 constexpr double kFadeCurvature = 5.8;  // the largest of an OffsetForecast's, of an offset of 1 in a time of 1
+constexpr double kStopPeriod = 0.5;     // s, between the times at which the plan might be left for a stop
+constexpr double kLatestStop = 2.0;     // s, the last of them
+constexpr std::array kLiftOff = {1.0, 3.0};  // s, after which a vehicle that is armed leaves the ground
+constexpr double kClimbing = 1.0;       // m/s, of a take-off
 constexpr double kCautious = 0.3;       // of the cruise speed, while what moves nearby is unexplained
 
 // The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
@@ -48,7 +57,7 @@ void blur(PlanJob& job, double sigma) {
 
 }  // namespace
 
-std::optional<PlanResult> Planning::take(double now) {
+std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
   std::optional<PlanResult> result;
   try {
     if (!failed_) result = planner_.poll(now);
@@ -57,8 +66,8 @@ std::optional<PlanResult> Planning::take(double now) {
   }
   if (!result) return result;
   ++plans_;
-  stays_at_target_ = stays_at(mission_.waypoints.back(), result->plan) &&
-                     (mission_.arrival == config::Arrival::kHold || lands_free(*result));
+  stays_at_end_ =
+      stays_at(end, result->plan) && (mission_.arrival == config::Arrival::kHold || lands_free(*result));
   reporter_.plan(now, *result);
   if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
   return result;
@@ -85,18 +94,22 @@ bool Planning::lands_free(const PlanResult& result) const {
       .free();
 }
 
-void Planning::start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {
+bool Planning::due(double now, Goal::Kind goal) const {
+  if (failed_ || planner_.busy()) return false;
+  if (!last_begun_ || goal != last_goal_) return true;
   const config::CompanionSettings& companion = settings_.companion;
-  if (failed_ || planner_.busy()) return;
   // One may come a period early: a message that comes late is followed by one that does not.
   const double period = 1.0 / companion.largest_replan_rate_hz;
-  const double due = new_tracks_ ? rate_kept_ - period : last_begun_.value_or(0.0) + 1.0 / companion.replan_rate_hz;
-  if (last_begun_ && now + 1e-6 < due) return;
-  rate_kept_ = std::max(rate_kept_, now) + period;
-  PlanJob next = job(now, intake, motion, route, visit);
+  return now + 1e-6 >= (new_tracks_ ? rate_kept_ - period : *last_begun_ + 1.0 / companion.replan_rate_hz);
+}
+
+void Planning::start(double now, Intake& intake, const MotionControl& motion, const Goal& goal) {
+  rate_kept_ = std::max(rate_kept_, now) + 1.0 / settings_.companion.largest_replan_rate_hz;
+  PlanJob next = job(now, intake, motion, goal);
   // What came before the first plan waited for the flight to begin.
   if (new_tracks_ && last_begun_) next.newest_track = intake.table().newest_message();
   last_begun_ = now;
+  last_goal_ = goal.kind;
   new_tracks_ = false;
   try {
     planner_.start(std::move(next));
@@ -105,49 +118,63 @@ void Planning::start(double now, Intake& intake, const MotionControl& motion, Ro
   }
 }
 
-PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit) {
+// All that is known to move, at the job's start.
+void Planning::look_around(double now, Intake& intake, PlanJob& job) const {
+  job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
+  if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
+  if (mission_.tracks.sensed_from == config::SensedFrom::kWorld) blur(job, intake.state().position_sigma);
+}
+
+// What is asked of any path of the vehicle; the request says where it begins and leads to.
+void Planning::demand(const vehicle::VehicleState& state, double margin,
+                      planner::horizon::PathRequest& request) const {
+  const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
+  request.vehicle = mission_.vehicle;
+  request.margin = in_world ? std::hypot(margin, state.position_sigma) : margin;
+  request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
+  request.track_acceleration = settings_.horizon.track_acceleration;
+  request.acceleration_trust = settings_.horizon.acceleration_trust;
+}
+
+PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, const Goal& goal) {
   const vehicle::VehicleState& state = intake.state();
   const setpoints::SetpointStream& stream = motion.stream();
   PlanJob job;
+  job.goal = goal.kind;
   job.number = plans_;
   job.begun = now;
   job.start = now + std::max(planner_.latency(), settings_.companion.commitment + state.link_delay);
   job.estimate_shift = intake.estimate_shift();
-  job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
-  if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
-  const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
-  if (in_world) blur(job, state.position_sigma);
+  look_around(now, intake, job);
 
-  const bool lost = motion.lost(state);
+  const bool lost = motion.lost(now, state);
   const double share = motion.share(now);
   reporter_.reference_lost(now, lost, motion.error(state), share);
+  // In take-off the reference says nothing of the vehicle's motion until a plan is followed.
+  const bool from_vehicle = lost || (goal.kind == Goal::Kind::kClimb && stream.plan(now).empty());
   // The plan begins where the vehicle will be, which is beside its reference.
-  if (!lost) job.offset = motion.offset().forecast();
+  if (!from_vehicle) job.offset = motion.offset().forecast();
   const planner::base::TimedPoint reference = stream.reference(job.start);
   const planner::base::TimedPoint offset = job.offset.at(job.start);
   planner::horizon::PathRequest& request = job.request;
-  request.position = lost ? base::position_at(state.motion, job.start) : Vec3(reference.position + offset.position);
-  request.velocity = lost ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
-  request.target = route.target();
-  request.vehicle = mission_.vehicle;
+  request.position = from_vehicle ? base::position_at(state.motion, job.start)
+                                  : Vec3(reference.position + offset.position);
+  request.velocity = from_vehicle ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
+  request.target = goal.target;
+  request.visit = goal.visit;
+  request.stuck = goal.stuck;
+  reporter_.stuck(now, request.stuck);
+  // Gaps are as wide as they are: who has waited in vain for one does not ask for more than is asked for at the start.
+  demand(state, request.stuck ? settings_.horizon.margin : motion.margin(), request);
+  double& largest_margin = reporter_.summary().largest_margin;
+  largest_margin = std::max(largest_margin, request.margin);
   request.vehicle.max_acceleration *= share;
   request.vehicle.cruise_speed *= share;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
   const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
-  request.visit = visit;
-  request.stuck = visit && route.stuck(now, state.motion.value.position);
-  reporter_.stuck(now, request.stuck);
-  // Gaps are as wide as they are: who has waited in vain for one does not ask for more than is asked for at the start.
-  request.margin = request.stuck ? settings_.horizon.margin : motion.margin();
-  if (in_world) request.margin = std::hypot(request.margin, state.position_sigma);
-  double& largest_margin = reporter_.summary().largest_margin;
-  largest_margin = std::max(largest_margin, request.margin);
-  request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
-  request.track_acceleration = settings_.horizon.track_acceleration;
-  request.acceleration_trust = settings_.horizon.acceleration_trust;
-  if (!lost) {
+  if (!from_vehicle) {
     job.previous = stream.plan(job.start);
     // A plan to another waypoint is no plan to keep.
     if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
@@ -155,6 +182,75 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, R
     for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
   }
   return job;
+}
+
+// Straight on braking; or a while along the plan, which may be past what comes by then.
+std::vector<planner::base::TimedPath> Planning::stops(double now, const MotionControl& motion,
+                                                      const MotionControl::StopStart& start) {
+  const setpoints::SetpointStream& stream = motion.stream();
+  std::vector<planner::base::TimedPath> stops;
+  if (start.on_reference && motion.stop_point()) stops.push_back(stream.ahead(now));
+  stops.push_back(stream.straight_stop(start.from));
+  if (!start.on_reference || stream.plan(now).empty()) return stops;
+  const planner::base::TimedPath ahead = stream.ahead(now);
+  for (double later = kStopPeriod; later <= kLatestStop && now + later < ahead.back().t; later += kStopPeriod) {
+    planner::base::TimedPath& stop = stops.emplace_back();
+    std::copy_if(ahead.begin(), ahead.end(), std::back_inserter(stop),
+                 [&](const planner::base::TimedPoint& point) { return point.t < now + later; });
+    const planner::base::TimedPath rest = stream.straight_stop(planner::base::sample(ahead, now + later));
+    stop.insert(stop.end(), rest.begin(), rest.end());
+  }
+  return stops;
+}
+
+planner::base::TimedPath Planning::stop(double now, Intake& intake, const MotionControl& motion,
+                                        const MotionControl::StopStart& start) {
+  setpoints::OffsetForecast offset;
+  if (start.on_reference) offset = motion.offset().forecast();
+  std::vector<planner::base::TimedPath> flown = stops(now, motion, start);
+  for (planner::base::TimedPath& stop : flown) {
+    stop = offset.added_to(std::move(stop));
+    for (planner::base::TimedPoint& point : stop) point.t -= now;
+  }
+  PlanJob job;
+  job.start = now;
+  look_around(now, intake, job);
+  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
+  job.request.position = flown.front().front().position;
+  job.request.velocity = flown.front().front().velocity;
+  job.request.target = flown.front().back().position;
+  demand(intake.state(), motion.margin(), job.request);
+  planner::horizon::Stop chosen = contingency_.choose(job.request, flown);
+  reporter_.stops(now, chosen);
+  for (planner::base::TimedPoint& point : chosen.path) point.t += now;
+  return offset.taken_off(std::move(chosen.path));
+}
+
+// Whether it leaves the ground at once or late. What seems to be where the vehicle stands is the vehicle.
+bool Planning::climbs_free(double now, Intake& intake) const {
+  const Vec3& ground = intake.state().motion.value.position;
+  const Vec3 top = climb_end(mission_, intake.state());
+  PlanJob job;
+  job.start = now;
+  look_around(now, intake, job);
+  const double radius = mission_.vehicle.radius;
+  std::erase_if(job.tracks, [&](const planner::base::Track& t) {
+    return (t.position - ground).norm() < t.radius + radius;
+  });
+  job.forecasts.clear();  // they number the tracks; for so short a time the tracks do
+  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
+  job.request.position = job.request.target = ground;
+  demand(intake.state(), settings_.horizon.margin, job.request);
+  job.request.volume = {};
+  return std::all_of(kLiftOff.begin(), kLiftOff.end(), [&](double lift_off) {
+    const double up = lift_off + (top - ground).norm() / kClimbing;
+    const planner::base::TimedPath path{{0.0, ground, Vec3::Zero(), Vec3::Zero()},
+                                        {lift_off, ground, Vec3::Zero(), Vec3::Zero()},
+                                        {std::max(up, lift_off + 1e-3), top, Vec3::Zero(), Vec3::Zero()}};
+    const planner::verify::Verification seen =
+        planner::horizon::verify_until(path, job.request, std::max(up, settings_.horizon.time));
+    return seen.free() && seen.min_clearance >= job.request.margin;
+  });
 }
 
 planner::base::Box Planning::volume(const Vec3& start, const Vec3& target, double margin, double sigma) const {

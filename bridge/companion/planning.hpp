@@ -7,14 +7,15 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bridge/companion/intake.hpp"
 #include "bridge/companion/motion.hpp"
 #include "bridge/companion/planner_task.hpp"
 #include "bridge/companion/report.hpp"
-#include "bridge/companion/route.hpp"
 #include "config/mission.hpp"
 #include "config/settings.hpp"
+#include "planner/horizon/contingency.hpp"
 
 namespace jink::bridge::companion {
 
@@ -23,25 +24,43 @@ class Planning {
  public:
   Planning(const config::Mission& mission, const config::Settings& settings, PlannerTask& planner,
            FlightReporter& reporter)
-      : mission_(mission), settings_(settings), planner_(planner), reporter_(reporter) {}
+      : mission_(mission),
+        settings_(settings),
+        planner_(planner),
+        reporter_(reporter),
+        contingency_(settings.horizon) {}
 
-  /// The plan that has been finished, if any.
-  std::optional<PlanResult> take(double now);
-  /// Starts a plan where the planner is free and one is due: at once where a track message came, else at a rate. With
-  /// `visit` it is enough that the plan has been at the target.
-  void start(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit);
+  /// The plan that has been finished, if any. `end`: where the flight is to end.
+  std::optional<PlanResult> take(double now, const Vec3& end);
+  /// The planner is free and a plan is due: at once where a track message came or the goal is another, else at a rate.
+  [[nodiscard]] bool due(double now, Goal::Kind goal) const;
+  /// Starts a plan. Precondition: due().
+  void start(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
   void tracks_came() { new_tracks_ = true; }
+  /// The reference to stop along, by what is known now, without the planner.
+  [[nodiscard]] planner::base::TimedPath stop(double now, Intake& intake, const MotionControl& motion,
+                                              const MotionControl::StopStart& start);
+  /// Nothing that is known comes near where the vehicle stands or into its way up, should it take off now.
+  [[nodiscard]] bool climbs_free(double now, Intake& intake) const;
 
   /// When the newest plan with a path was begun. One made under a hazard counts: the planner is alive.
   [[nodiscard]] std::optional<double> newest_plan() const { return newest_plan_; }
   [[nodiscard]] std::uint64_t plans() const { return plans_; }
-  /// By the newest plan the last waypoint stays free, and the vehicle there; where it is to land, the way down, too.
-  [[nodiscard]] bool stays_at_target() const { return stays_at_target_; }
+  /// No plan for so long that the planner is no help.
+  [[nodiscard]] bool late(double now) const {
+    return !newest_plan_ || now - *newest_plan_ > settings_.companion.stale_plan;
+  }
+  /// By the newest plan the flight's end stays free, and the vehicle there; where it is to land, the way down, too.
+  [[nodiscard]] bool stays_at_end() const { return stays_at_end_; }
   /// What the planner threw, in words, once.
   std::optional<std::string> take_failure() { return std::exchange(failure_, std::nullopt); }
 
  private:
-  [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, Route& route, bool visit);
+  [[nodiscard]] PlanJob job(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
+  [[nodiscard]] static std::vector<planner::base::TimedPath> stops(double now, const MotionControl& motion,
+                                                                   const MotionControl::StopStart& start);
+  void look_around(double now, Intake& intake, PlanJob& job) const;
+  void demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const;
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
   [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);
@@ -50,12 +69,14 @@ class Planning {
   const config::Settings& settings_;
   PlannerTask& planner_;
   FlightReporter& reporter_;
+  planner::horizon::Contingency contingency_;
   std::optional<double> last_begun_;
+  Goal::Kind last_goal_ = Goal::Kind::kWaypoint;
   bool new_tracks_ = false;  // since then
   double rate_kept_ = 0.0;   // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;
   std::uint64_t plans_ = 0;
-  bool stays_at_target_ = false;
+  bool stays_at_end_ = false;
   bool failed_ = false;
   std::optional<std::string> failure_;
 };

@@ -60,6 +60,15 @@ void FlightReporter::setpoint(double now, const vehicle::Setpoint& setpoint) {
   for (FlightObserver* observer : observers_) observer->on_setpoint(now, setpoint);
 }
 
+// Each time that one begins, or is looked at again.
+void FlightReporter::stops(double now, const planner::horizon::Stop& stop) {
+  const auto& contact = stop.verification.first_contact;
+  if (!changed(said_.evades, stop.choice > 0 || contact) || !said_.evades) return;
+  event(now, "evades",
+        contact ? "no stop stays free, contact in " + base::seconds(*contact) + ": the least bad one"
+                : "a straight stop would not stay free: another one");
+}
+
 void FlightReporter::stall(double now, double duration, const std::string& text) {
   event(now, "stalled", text);
   summary_.hazards.push_back({text, now - duration, duration});
@@ -126,7 +135,9 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
   announce_phase(now, supervisor, intake.state());
   if (changed(said_.waiting, supervisor.waiting_for()) && !said_.waiting.empty()) event(now, "waiting", said_.waiting);
   if (changed(said_.arrived, supervisor.arrived()) && said_.phase == supervisor::Phase::kFlying)
-    event(now, "arrived", "it does not stay free there: holding out of the way of what comes");
+    event(now, "arrived",
+          mission_.arrival == config::Arrival::kLand ? "going down as far as plans lead, to land where it stays free"
+                                                     : "it does not stay free there: holding out of the way of what comes");
   if (changed(said_.hazard, supervisor.hazard()))
     event(now, said_.hazard.empty() ? "hazard_over" : "hazard", said_.hazard);
   announce_vehicle(now, supervisor, intake.state().battery, margin, tracking_error);

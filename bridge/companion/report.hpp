@@ -14,6 +14,7 @@
 #include "bridge/supervisor/supervisor.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "config/mission.hpp"
+#include "planner/horizon/contingency.hpp"
 
 namespace jink::bridge::companion {
 
@@ -79,6 +80,7 @@ class FlightReporter {
   void tracks(double now, const std::vector<planner::base::Track>& tracks);
   void plan(double now, const PlanResult& result);
   void setpoint(double now, const vehicle::Setpoint& setpoint);
+  void stops(double now, const planner::horizon::Stop& stop);
   void stall(double now, double duration, const std::string& text);
   void estimate_reset(double now, const Vec3& shift);
   /// In flight: the way from the last call's position.
@@ -104,7 +106,7 @@ class FlightReporter {
     supervisor::Phase phase = supervisor::Phase::kDone;
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
-    bool reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true, margin = false;
+    bool evades = false, reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true, margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;

@@ -11,7 +11,7 @@ bool Route::pass(const Vec3& position) {
 }
 
 bool Route::arrived(const Vec3& position, const Vec3& velocity) const {
-  return next_ + 1 == waypoints_.size() && (position - target()).norm() < kArrival && velocity.norm() < kArrivalSpeed;
+  return next_ + 1 == waypoints_.size() && at(target(), position, velocity);
 }
 
 bool Route::stuck(double now, const Vec3& position) {

@@ -29,6 +29,10 @@ class Route {
   [[nodiscard]] std::size_t size() const { return waypoints_.size(); }
   /// Goes on to the next waypoint where the vehicle is at one on the way; then true.
   bool pass(const Vec3& position);
+  /// At that place, slow.
+  [[nodiscard]] static bool at(const Vec3& place, const Vec3& position, const Vec3& velocity) {
+    return (position - place).norm() < kArrival && velocity.norm() < kArrivalSpeed;
+  }
   /// At the last waypoint, slow.
   [[nodiscard]] bool arrived(const Vec3& position, const Vec3& velocity) const;
   /// Whether the vehicle has long come no nearer to where it goes. To be asked in each plan.

@@ -32,7 +32,6 @@ void SetpointStream::hold(const Vec3& position, double now) {
   current_ = {{now, position, Vec3::Zero(), Vec3::Zero()}};
   next_.clear();
   is_plan_ = false;
-  is_braking_ = false;
 }
 
 void SetpointStream::follow(planner::base::TimedPath path, const OffsetForecast& offset) {
@@ -54,16 +53,20 @@ void SetpointStream::follow(planner::base::TimedPath path, const OffsetForecast&
   next_ = offset.taken_off(planned_);
   if (current_.empty()) current_ = next_;
   is_plan_ = true;
-  is_braking_ = false;
 }
 
-void SetpointStream::brake(double now, const std::optional<planner::base::TimedPoint>& measured) {
-  if (is_braking_ || (!active() && !measured)) return;
-  const planner::base::TimedPoint from = measured ? *measured : reference(now);
+void SetpointStream::brake(planner::base::TimedPath stop) {
+  assert(!stop.empty());
+  current_ = std::move(stop);
+  next_.clear();
+  is_plan_ = false;
+}
+
+planner::base::TimedPath SetpointStream::straight_stop(const planner::base::TimedPoint& from) const {
   planner::base::TimedPath stop;
   Vec3 position = from.position;
   Vec3 velocity = from.velocity;
-  double t = now;
+  double t = from.t;
   const double braking = deceleration(position, velocity);
   while (velocity.norm() > kAtRest && stop.size() < kLongestStop) {
     const double speed = velocity.norm();
@@ -75,10 +78,7 @@ void SetpointStream::brake(double now, const std::optional<planner::base::TimedP
     t += kBrakeStep;
   }
   stop.push_back({t, position, Vec3::Zero(), Vec3::Zero()});
-  current_ = std::move(stop);
-  next_.clear();
-  is_plan_ = false;
-  is_braking_ = true;
+  return stop;
 }
 
 // A stop from speed v takes v²/2a; along each axis the volume leaves so much way.

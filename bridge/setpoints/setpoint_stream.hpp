@@ -33,10 +33,11 @@ class SetpointStream {
   /// before. `offset`: what the vehicle is expected to be beside its reference, which is led so much beside the path.
   /// Precondition: not empty.
   void follow(planner::base::TimedPath path, const OffsetForecast& offset = {});
-  /// Stops as the deceleration allows from the reference's (or, where `measured` is given, that) position and velocity,
-  /// then holds there. Where that would lead out of `volume` it brakes as hard as it takes to stay inside, up to
-  /// `hardest`. Does nothing while a brake is on.
-  void brake(double now, const std::optional<planner::base::TimedPoint>& measured = {});
+  /// Follows a way to rest at once, and stays at its end. Precondition: not empty.
+  void brake(planner::base::TimedPath stop);
+  /// The straight way to rest from there, as the deceleration allows. Where that would lead out of `volume` it is as
+  /// hard as it takes to stay inside, up to `hardest`.
+  [[nodiscard]] planner::base::TimedPath straight_stop(const planner::base::TimedPoint& from) const;
   /// Moves all that is followed: the autopilot's estimate jumped by that, the vehicle did not move.
   void shift(const Vec3& by);
 
@@ -61,7 +62,6 @@ class SetpointStream {
   [[nodiscard]] bool active() const { return !current_.empty(); }
   /// Of the autopilot's estimate, m/s: estimated minus true.
   [[nodiscard]] Vec3 velocity_error() const { return velocity_error_.value(); }
-  [[nodiscard]] bool braking() const { return is_braking_; }
   /// The path that follow() was given last, from time t on, for the planner's warm start; empty while holding or
   /// braking.
   [[nodiscard]] planner::base::TimedPath plan(double t) const;
@@ -82,7 +82,6 @@ class SetpointStream {
   double drag_;
   double damping_;
   bool is_plan_ = false;
-  bool is_braking_ = false;
   planner::base::TimedPath current_;
   planner::base::TimedPath next_;     // takes over at its first time
   planner::base::TimedPath planned_;  // the path that the vehicle is to fly along next_

@@ -57,7 +57,8 @@ struct Climbing {
 struct Flying {
   static constexpr Phase kPhase = Phase::kFlying;
   double since = 0.0;
-  std::optional<double> arrived{};  ///< when it first was at the target, which did not stay free
+  std::optional<double> arrived{};  ///< when it first was at the target
+  std::optional<double> at_end{};   ///< when it first was where the flight ends, which did not stay free
 };
 struct Stopping {
   static constexpr Phase kPhase = Phase::kStopping;

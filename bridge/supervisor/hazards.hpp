@@ -30,8 +30,10 @@ struct FlightContext {
   bool ground_known = true;  ///< its height, if the mission counts from it
   bool low = false;          ///< clearly under min_height
   bool at_takeoff_height = false;
+  bool overhead_free = true;                     ///< nothing comes into the way of a take-off
   bool at_target = false;                        ///< within the arrival tolerance of the last waypoint, slow
-  bool leaves_target = false;                    ///< no plan stays there: it does not stay free
+  bool at_end = false;                           ///< so where the flight ends: there, or low above where it lands
+  bool leaves_end = false;                       ///< no plan stays there: it does not stay free
   bool at_rest = false;                          ///< the brake has done its work
   std::optional<vehicle::CommandReport> report;  ///< newest answer of the autopilot
 };

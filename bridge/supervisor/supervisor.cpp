@@ -93,6 +93,8 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     waiting_for_ = "the local origin's height above the sea";
   } else if (state.battery == vehicle::BatteryState::kLow || state.battery == vehicle::BatteryState::kCritical) {
     waiting_for_ = "a charged battery: it is " + std::string(vehicle::to_string(state.battery));
+  } else if (!in.flight.overhead_free) {
+    waiting_for_ = "the air above the vehicle to be free of obstacles";
   }
   return MissingPeer::kNone;
 }
@@ -198,12 +200,12 @@ Decision Supervisor::step(Climbing& phase, const Input& in) {
 
 Decision Supervisor::step(Flying& phase, const Input& in) {
   // Where the vehicle was is no proof of where it is.
-  const bool at_target =
-      in.flight.at_target && in.state.motion.silence(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
-  if (at_target && !phase.arrived) phase.arrived = in.now;
-  if (at_target && !in.flight.leaves_target) {
+  const bool sure = in.state.motion.silence(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
+  if (sure && in.flight.at_target && !phase.arrived) phase.arrived = in.now;
+  if (sure && phase.arrived && in.flight.at_end && !phase.at_end) phase.at_end = in.now;
+  if (sure && phase.at_end && in.flight.at_end && !in.flight.leaves_end) {
     hazard_.clear();
-    const double held = in.now - *phase.arrived;
+    const double held = in.now - *phase.at_end;
     Ending ending{Outcome::kReached, "target reached" + (held > 0.0 ? ", free after " + base::seconds(held) : ""), {}};
     if (mission_.arrival == config::Arrival::kLand) {
       phase_ = Landing{in.now, std::move(ending)};

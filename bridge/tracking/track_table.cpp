@@ -153,9 +153,14 @@ bool TrackTable::has_unexplained(double speed) const {
   });
 }
 
+bool TrackTable::outlived(const Writer& writer, double received, double now) const {
+  const bool silent = writer.sends_when_empty && writer.believed.value_or(received) - received <= coast_s_;
+  return now - received > (missed_ && silent ? std::max(coast_s_, kMissed) : coast_s_);
+}
+
 void TrackTable::forget(double now) {
   std::erase_if(entries_, [&](const auto& item) {
-    const bool gone = now - item.second.track.received > coast_s_;
+    const bool gone = outlived(writers_.at(item.first.first), item.second.track.received, now);
     if (gone && item.second.learned) --learned_;
     return gone;
   });

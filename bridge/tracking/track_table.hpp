@@ -32,7 +32,8 @@ struct TrackTableCounts {
 /// avoided twice. Not thread-safe.
 class TrackTable {
  public:
-  /// `coast_s`: how long a track lives on after the last message that held it.
+  /// `coast_s`: how long a track lives on after the last message that held it; where its writer is missed, and says
+  /// nothing that speaks against it, kMissed.
   explicit TrackTable(double coast_s) : coast_s_(coast_s) {}
 
   /// Takes in one message. The measurement's instant is the reception less the delay that the writer's
@@ -47,6 +48,9 @@ class TrackTable {
   /// as long as they stay there. What only stands beside a vehicle that hangs there is never taken for it. To be called
   /// when messages came in.
   void find_self(double now, const Vec3& position, const Vec3& velocity, double radius);
+
+  /// Whether a writer is missed: what the silent ones told is all that is known of what they watched.
+  void miss(bool missed) { missed_ = missed; }
 
   /// All living tracks, predicted to `now`: constant acceleration for at most `trust` seconds, then constant velocity.
   /// Their age counts from the measurement. Order: by writer, then by id; ids are numbered anew where two writers use
@@ -72,6 +76,7 @@ class TrackTable {
   static constexpr int kFits = 8;                   ///< for a message, at most
   static constexpr double kMeeting = 2.0;           ///< s
   static constexpr double kSelfWay = 1.0;           ///< m
+  static constexpr double kMissed = 10.0;           ///< s: until a flight has been ended for it
   static constexpr double kForgetWriter = 60.0;     ///< s of silence, after which a writer is taken for ended
 
  private:
@@ -100,10 +105,12 @@ class TrackTable {
   static void take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured);
   void learn(const TrackMessage& message, double t);
   void forget(double now);
+  [[nodiscard]] bool outlived(const Writer& writer, double received, double now) const;
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // writer, id
 
   double coast_s_;
+  bool missed_ = false;
   std::optional<double> newest_message_;
   TrackTableCounts counts_;
   int own_tracks_ = 0;

@@ -11,6 +11,7 @@
 
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/initial_paths.hpp"
+#include "planner/horizon/path_check.hpp"
 #include "planner/optimizer/pmomvo.hpp"
 #include "planner/optimizer/topsis.hpp"
 
@@ -38,31 +39,6 @@ bool finite(const PathRequest& request) {
                      }) &&
          std::all_of(request.paths.begin(), request.paths.end(),
                      [](const geometry::KnownPath& p) { return p.well_formed(); });
-}
-
-/// Checks a path up to a time; a path that ends before waits at its end.
-verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {
-  const auto check = [&](std::span<const base::TimedPoint> points) {
-    return verify::verify({points, request.tracks, 0.0, request.vehicle.radius, request.volume,
-                           request.acceleration_trust, until, request.paths});
-  };
-  if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
-  base::TimedPath waiting = path;
-  waiting.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
-  return check(waiting);
-}
-
-/// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
-/// the verifier's accuracy), then the softer contact.
-bool is_safer(const verify::Verification& a, const verify::Verification& b) {
-  if (a.free() != b.free()) return a.free();
-  if (a.valid != b.valid) return a.valid;
-  if (a.free()) return a.min_clearance > b.min_clearance;
-  if (a.inside_volume != b.inside_volume && !a.first_contact) return a.inside_volume;
-  const double until_a = a.first_contact.value_or(base::kInfinity);
-  const double until_b = b.first_contact.value_or(base::kInfinity);
-  if (std::abs(until_a - until_b) > 1e-6) return until_a > until_b;
-  return a.contact_speed < b.contact_speed;
 }
 
 base::TimedPath unobstructed(const PathProblem& problem) {

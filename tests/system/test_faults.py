@@ -35,7 +35,7 @@ SCENARIO = {
         {"radius": 0.5, "position": [6, 1.4, 1.5]},                           # stands beside it
         {"radius": 0.4, "motion": {"type": "sine", "center": [3, 3, 2], "amplitude": [1, 0, 0], "frequency_hz": [0.3, 0, 0],
                                    "phase": [0, 0, 0]}}]}
-# Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile, or brakes without sight.
+# Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile.
 UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [7, -4, 1.5]},
                            {**SCENARIO["obstacles"][1], "position": [6, 2.4, 1.5]}, SCENARIO["obstacles"][2]]}
 
@@ -192,20 +192,17 @@ CASES = [
          ("position is stale",), scenario=UNSTEERED),
     Case("link_silent_for_good", [at(1.5, "link_loss")], 1, "position is stale", ("hazard",), ("position is stale",),
          end="ground", linger=12.0, scenario=UNSTEERED),
-    Case("telemetry_lost", [at(1.5, "link_loss", direction="down")], 1, "position is stale", (), ("position is stale",),
-         scenario=UNSTEERED),
+    Case("telemetry_lost", [at(1.5, "link_loss", direction="down")], 1, "position is stale", (), ("position is stale",)),
     Case("setpoints_lost", [at(1.5, "link_loss", direction="up", **{"for": 4.0})], 1, "failsafe", (), ("failsafe",),
          scenario=UNSTEERED),
     Case("packet_loss", [at(0, "packet_loss", rate=0.2)]),
     Case("delay", [at(0, "delay", seconds=0.2)]),
     Case("reordering", [at(0, "reorder", rate=0.3)]),
     Case("tracks_stop_0.5s", [at(1.5, "tracks_stop", **{"for": 0.5})]),
-    Case("tracks_stop_2s", [at(1.5, "tracks_stop", **{"for": 2.0})], hazards=("tracks are stale",), after=braked_soon,
-         scenario=UNSTEERED),
-    Case("tracks_stop_for_good", [at(1.0, "tracks_stop")], 1, "tracks are stale", (), ("tracks are stale",), end="hold",
-         scenario=UNSTEERED),
+    Case("tracks_stop_2s", [at(1.5, "tracks_stop", **{"for": 2.0})], hazards=("tracks are stale",), after=braked_soon),
+    Case("tracks_stop_for_good", [at(1.0, "tracks_stop")], 1, "tracks are stale", (), ("tracks are stale",), end="hold"),
     Case("tracks_frozen", [at(1.0, "tracks_freeze")], 1, "tracks are stale", ("tracks_frozen",), ("tracks are stale",),
-         end="hold", scenario=UNSTEERED),
+         end="hold"),
     Case("track_noise", [at(0, "track_noise", position=0.1, velocity=0.2)]),
     Case("id_swap", [at(1.0, "id_swap")]),
     Case("obstacle_at_short_range", scenario={"sensing": {"range": 3.5}}),

@@ -307,11 +307,15 @@ TEST(Companion, WhatIsTakenOverBelowTheLowestHeightClimbsBeforeItFliesOn) {
   loop.run(1.0);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
   EXPECT_EQ(loop.last().position, Vec3(0, 0, 1));
-  EXPECT_TRUE(loop.planner.jobs.empty());
+  ASSERT_FALSE(loop.planner.jobs.empty());
+  for (const PlanJob& job : loop.planner.jobs) {
+    EXPECT_EQ(job.goal, Goal::Kind::kClimb);
+    EXPECT_EQ(job.request.target, Vec3(0, 0, 1));
+  }
   loop.link.telemetry.motion.value.position.z() = 0.9;
   loop.run(0.5);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
-  EXPECT_FALSE(loop.planner.jobs.empty());
+  EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(20, 0, 2));
 }
 
 TEST(Companion, TurnsTheHeadingToTheWaypointAtABoundedRate) {

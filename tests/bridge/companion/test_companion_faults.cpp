@@ -121,17 +121,27 @@ TEST(Companion, AnInterruptInTheClimbStopsTheClimb) {
 }
 
 TEST(Companion, AClimbGoesOnAfterAHazard) {
-  Loop loop;
+  config::Mission mission = Loop::mission();
+  mission.takeoff_height = 8.0;
+  Loop loop(mission);
   loop.follows = false;
   loop.run(1.0);
   loop.link.telemetry.motion.value.position = {0, 0, 0.8};
   loop.link.telemetry.in_air = true;
+  loop.run(0.2);
+  loop.follows = true;
+  EXPECT_EQ(loop.planner.jobs.back().goal, Goal::Kind::kClimb);
   loop.tracks = false;
-  loop.run(1.5);
-  EXPECT_NEAR(loop.last().position.z(), 0.8, 1e-9);
+  loop.run(3.0);
+  const double height = loop.last().position.z();
+  EXPECT_LT(height, 5.0);
+  EXPECT_EQ(loop.last().velocity.z(), 0.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
   loop.tracks = true;
-  loop.run(0.1);
-  EXPECT_EQ(loop.last().position, Vec3(0, 0, 2));
+  loop.run(0.5);
+  EXPECT_GT(loop.last().position.z(), height + 0.2);
+  EXPECT_EQ(loop.planner.jobs.back().goal, Goal::Kind::kClimb);
+  EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(0, 0, 8));
 }
 
 TEST(Companion, BrakesAtTheVehicleWhereTrackingIsLost) {

@@ -19,7 +19,7 @@ TEST(Supervisor, InterruptInTheLandingEndsInHold) {
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
   flight.fly();
-  flight.context.at_target = true;
+  flight.context.at_target = flight.context.at_end = true;
   flight.turn();
   flight.turn();
   flight.state.mode = vehicle::FlightMode::kLand;
@@ -52,7 +52,7 @@ TEST(Supervisor, TheTimeLimitEndsInHold) {
 
 TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
   Flight flight;
-  flight.fly().context.at_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
   flight.turn();
   EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
   EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
@@ -64,17 +64,17 @@ TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
 // What comes there would hit a vehicle in HOLD: it goes on following plans, which hold clear.
 TEST(Supervisor, ATargetThatDoesNotStayFreeIsNotHeldIn) {
   Flight flight;
-  flight.fly().context.at_target = true;
-  flight.context.leaves_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.context.leaves_end = true;
   EXPECT_EQ(flight.run(1.0).motion, Motion::kFollow);
   EXPECT_TRUE(flight.supervisor.arrived());
-  flight.context.at_target = false;
+  flight.context.at_target = flight.context.at_end = false;
   flight.run(5.0);
-  flight.context.leaves_target = false;  // as seen from beside it
+  flight.context.leaves_end = false;  // as seen from beside it
   flight.run(1.0);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
   EXPECT_TRUE(flight.supervisor.arrived());
-  flight.context.at_target = true;
+  flight.context.at_target = flight.context.at_end = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
   EXPECT_TRUE(flight.supervisor.reason().starts_with("target reached, free after 7.")) << flight.supervisor.reason();
@@ -82,10 +82,10 @@ TEST(Supervisor, ATargetThatDoesNotStayFreeIsNotHeldIn) {
 
 TEST(Supervisor, ATargetThatNeverStaysFreeIsReachedAllTheSame) {
   Flight flight;
-  flight.fly().context.at_target = true;
-  flight.context.leaves_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.context.leaves_end = true;
   flight.turn();
-  flight.context.at_target = false;
+  flight.context.at_target = flight.context.at_end = false;
   flight.run(100.0);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kStopping);
   flight.context.at_rest = true;
@@ -100,7 +100,7 @@ TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
   Flight flight;
   flight.fly().positions = false;
   flight.run(0.6);
-  flight.context.at_target = true;
+  flight.context.at_target = flight.context.at_end = true;
   EXPECT_EQ(flight.turn().motion, Motion::kBrake);
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
@@ -109,7 +109,7 @@ TEST(Supervisor, ArrivalByLandingIsReachedOnTheGroundDisarmed) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().context.at_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
   flight.turn();
   EXPECT_EQ(flight.turn().request, vehicle::Command::kLand);
   flight.state.mode = vehicle::FlightMode::kLand;
@@ -129,7 +129,7 @@ TEST(Supervisor, ALandingTakenOverIsNoArrival) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().context.at_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
   flight.run(0.1);
   flight.state.mode = vehicle::FlightMode::kLand;
   flight.run(1.0);
@@ -143,7 +143,7 @@ TEST(Supervisor, ALandingThatDoesNotEndIsReported) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().context.at_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
   flight.run(0.1);
   flight.state.mode = vehicle::FlightMode::kLand;
   flight.run(95.0);
@@ -155,7 +155,7 @@ TEST(Supervisor, ALandingThatIsRefusedEndsInHold) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
   Flight flight(m);
-  flight.fly().context.at_target = true;
+  flight.fly().context.at_target = flight.context.at_end = true;
   flight.turn();
   while (flight.asked(vehicle::Command::kHold) == 0 && flight.now < 60.0) {
     flight.refuse(vehicle::Command::kLand, "denied");
@@ -174,7 +174,7 @@ TEST(Supervisor, HoldNeverConfirmedIsAskedForAgainAndThenSaid) {
     Flight flight;
     flight.fly().context.at_rest = true;
     if (arrived) {
-      flight.context.at_target = true;
+      flight.context.at_target = flight.context.at_end = true;
     } else {
       flight.supervisor.stop(flight.now, Outcome::kTimeout, "too late");
     }

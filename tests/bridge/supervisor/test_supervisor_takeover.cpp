@@ -171,7 +171,7 @@ TEST(Supervisor, OutOfAFailsafeThatSinksItAsksForHoldWithoutSetpoints) {
 TEST(Supervisor, AFailsafeInTheHandOverIsNoArrival) {
   Flight flight;
   flight.fly();
-  flight.context.at_target = true;
+  flight.context.at_target = flight.context.at_end = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kHandover);
   flight.turn();
@@ -194,7 +194,7 @@ TEST(Supervisor, AFailsafeIsNoPlaceToArriveIn) {
   flight.state.mode = vehicle::FlightMode::kPosition;
   flight.state.failsafe = true;
   flight.turn();
-  flight.context.at_target = true;
+  flight.context.at_target = flight.context.at_end = true;
   flight.turn();
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }

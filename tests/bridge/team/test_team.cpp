@@ -284,7 +284,7 @@ TEST(Team, TellsAStopAStayAndWhereItDriftsWhenItFollowsNothing) {
   Hearing h;
   setpoints::SetpointStream stream =
       stream_on({{10.0, {1, 2, 3}, {2, 0, 0}, Vec3::Zero()}, {20.0, {21, 2, 3}, {2, 0, 0}, Vec3::Zero()}});
-  stream.brake(10.0);
+  stream.brake(stream.straight_stop(stream.reference(10.0)));
   h.team.tell(10.0, own(), &stream, 1);
   EXPECT_NEAR(h.transport.sent.back().path.back().position.x(), 2.0, 0.05);  // v² / 2a
   stream.hold({1, 2, 3.2}, 10.0);

@@ -194,6 +194,24 @@ TEST(TrackTable, AFrozenPictureWithFreshStampsGoesStale) {
   EXPECT_TRUE(table.predict(15.0, 1.0).empty());
 }
 
+// Nobody says that it is gone.
+TEST(TrackTable, WhatAMissedWriterToldLivesOn) {
+  TrackTable table(kCoast);
+  table.ingest(message(10.0, 0.0, {track(1, {0, 0, 0}, {1, 0, 0}), track(2, {0, 9, 0})}));
+  table.ingest(message(10.5, 0.0, {track(2, {0, 9, 0})}));  // and no more of the first
+  table.ingest(message(10.0, 0.0, {track(3, {5, 0, 0}, {1, 0, 0})}, 2));
+  table.miss(true);
+  EXPECT_EQ(table.predict(11.6, 1.0).size(), 3U);
+  table.ingest(message(12.0, 0.0, {track(2, {0, 9, 0})}));
+  const auto tracks = table.predict(14.0, 1.0);
+  ASSERT_EQ(tracks.size(), 2U);  // the first writer went on without its first
+  EXPECT_EQ(tracks[0].id, 2U);
+  EXPECT_NEAR(tracks[1].position.x(), 9.0, 1e-9);
+  EXPECT_EQ(table.predict(20.5, 1.0).size(), 1U);  // there is an end to it
+  table.miss(false);                               // somebody else watches
+  EXPECT_TRUE(table.predict(20.6, 1.0).empty());
+}
+
 TEST(TrackTable, APictureOfWhatStandsStillIsNotFrozen) {
   TrackTable table(kCoast);
   for (double t = 10.0; t < 12.0; t += 0.05) table.ingest(message(t, 0.03, {track(2, {5, 5, 0})}));

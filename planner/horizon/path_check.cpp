@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/path_check.hpp"
+
+#include <cmath>
+#include <span>
+
+namespace jink::planner::horizon {
+
+verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {
+  const auto check = [&](std::span<const base::TimedPoint> points) {
+    return verify::verify({points, request.tracks, 0.0, request.vehicle.radius, request.volume,
+                           request.acceleration_trust, until, request.paths});
+  };
+  if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
+  base::TimedPath waiting = path;
+  waiting.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
+  return check(waiting);
+}
+
+bool is_safer(const verify::Verification& a, const verify::Verification& b) {
+  if (a.free() != b.free()) return a.free();
+  if (a.valid != b.valid) return a.valid;
+  if (a.free()) return a.min_clearance > b.min_clearance;
+  if (a.inside_volume != b.inside_volume && !a.first_contact) return a.inside_volume;
+  const double until_a = a.first_contact.value_or(base::kInfinity);
+  const double until_b = b.first_contact.value_or(base::kInfinity);
+  if (std::abs(until_a - until_b) > 1e-6) return until_a > until_b;
+  return a.contact_speed < b.contact_speed;
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A request's path before the verifier, and which of two does less harm.
+#pragma once
+
+#include "planner/base/trajectory.hpp"
+#include "planner/horizon/path_problem.hpp"
+#include "planner/verify/verifier.hpp"
+
+namespace jink::planner::horizon {
+
+/// Checks a path among the request's obstacles up to a path time, s; a path that ends before waits at its end.
+[[nodiscard]] verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until);
+
+/// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
+/// the verifier's accuracy), then the softer contact.
+[[nodiscard]] bool is_safer(const verify::Verification& a, const verify::Verification& b);
+
+}  // namespace jink::planner::horizon
