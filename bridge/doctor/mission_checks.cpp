@@ -39,10 +39,10 @@ Check inspect_position(const config::Mission& mission, const LinkFindings& heard
             "wait for GPS or another position source"};
   }
   if (!s.in_air && std::abs(s.motion.value.position.z()) > kGroundHeight) {
-    return {
-        mission.heights == config::Heights::kOrigin ? Level::kWarning : Level::kOk, "local position",
-        where + fmt::format(": on the ground at {:.1f} m above the local origin", s.motion.value.position.z()),
-        mission.heights == config::Heights::kOrigin ? "heights in the mission count from there: heights: origin" : ""};
+    const bool counts = mission.heights == config::Heights::kOrigin;
+    return {counts ? Level::kWarning : Level::kOk, "local position",
+            where + fmt::format(": on the ground at {:.1f} m above the local origin", s.motion.value.position.z()),
+            counts ? "the mission's heights count from the origin: heights: ground counts from here" : ""};
   }
   return {Level::kOk, "local position", where, ""};
 }

@@ -168,6 +168,9 @@ Decision Supervisor::step(Landing& phase, const Input& in) {
     if (endless || phase.leave) finish(std::move(phase.ending));
     return {};
   }
+  // It has landed: with its motors PX4 leaves LAND for the mode before, and the heartbeat says so a second later.
+  const bool touched_down = phase.request.asked() && !state.in_air && now - phase.since <= kLandingTimeout;
+  if (touched_down && state.mode == vehicle::FlightMode::kOffboard) return {};
   if (state.mode != vehicle::FlightMode::kOffboard) {
     fail("the landing was taken over: " + named(state.mode));
     finish(std::move(phase.ending));

@@ -202,7 +202,7 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
       {"local position", Level::kFault, "never heard",
        [](LinkFindings& h) { h.state.motion.stamp = h.state.motion.received = base::kNever; }},
       {"local position", Level::kFault, "not valid", [](LinkFindings& h) { h.state.local_position_ok = false; }},
-      {"local position", Level::kWarning, "5.0 m above",
+      {"local position", Level::kOk, "5.0 m above",
        [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},
       {"origin", Level::kWarning, "not told", [](LinkFindings& h) { h.state.origin.reset(); }},
       {"origin", Level::kWarning, "0.000000",
@@ -211,7 +211,7 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
        }},
       {"geofence", Level::kFault, "does not contain the vehicle",
        [](LinkFindings& h) { h.state.motion.value.position.x() = -60.0; }},
-      {"geofence", Level::kFault, "take-off leads to 20.5",
+      {"geofence", Level::kOk, "39.0) contains vehicle",  // it counts from the ground
        [](LinkFindings& h) { h.state.motion.value.position.z() = 19.0; }},
   };
   for (const Case& c : of_vehicle) {
@@ -221,6 +221,14 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
     EXPECT_EQ(check.level, c.level) << c.name << ": " << check.finding;
     EXPECT_NE(check.finding.find(c.finding), std::string::npos) << c.name << ": " << check.finding;
   }
+  LinkFindings raised = healthy();
+  raised.state.motion.value.position.z() = 19.0;
+  Mission from_origin = mission();
+  from_origin.heights = config::Heights::kOrigin;
+  EXPECT_EQ(find(inspect_mission(from_origin, raised), "local position").level, Level::kWarning);
+  const Check fence = find(inspect_mission(from_origin, raised), "geofence");
+  EXPECT_EQ(fence.level, Level::kFault);
+  EXPECT_NE(fence.finding.find("take-off leads to 20.5"), std::string::npos) << fence.finding;
   const auto of_mission = [](const std::string& name, const std::function<void(Mission&)>& change) {
     Mission m = mission();
     change(m);

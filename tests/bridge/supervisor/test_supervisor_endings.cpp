@@ -105,6 +105,25 @@ TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
 
+// With its motors PX4 leaves LAND for the mode before, and CURRENT_MODE says so up to a second before the heartbeat.
+TEST(Supervisor, TheModeOfBeforeALandingIsNoReasonToLandAgain) {
+  config::Mission m = Flight::mission();
+  m.arrival = config::Arrival::kLand;
+  Flight flight(m);
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.run(0.1);
+  flight.state.mode = vehicle::FlightMode::kLand;
+  flight.run(3.0);
+  ASSERT_EQ(flight.asked(vehicle::Command::kLand), 1);
+  flight.state.in_air = false;
+  flight.state.mode = vehicle::FlightMode::kOffboard;
+  EXPECT_EQ(flight.run(0.8).motion, Motion::kNone);
+  EXPECT_EQ(flight.asked(vehicle::Command::kLand), 1);
+  flight.state.armed = false;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
+}
+
 TEST(Supervisor, ArrivalByLandingIsReachedOnTheGroundDisarmed) {
   config::Mission m = Flight::mission();
   m.arrival = config::Arrival::kLand;
