@@ -9,12 +9,12 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kStall = 0.2;      // s between two turns of the loop, which is to be said
-constexpr double kLongStall = 1.0;  // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
-constexpr double kLow = 0.3;        // m, below min_height: less is noise
+constexpr double kStall = 0.2;          // s between two turns of the loop, which is to be said
+constexpr double kLongStall = 1.0;      // s: PX4's COM_OF_LOSS_T; whatever held that up, the autopilot has given us up
+constexpr double kLow = 0.3;            // m, below min_height: less is noise
 constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
 constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
-constexpr double kFlat = 0.05;      // m, likewise, between the ground and the local frame
+constexpr double kFlat = 0.05;          // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
   supervisor::SupervisorSettings result;

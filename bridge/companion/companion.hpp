@@ -76,7 +76,7 @@ class Companion {
   Planning planning_;
   Route route_;
   std::optional<double> last_step_;
-  std::optional<Goal::Kind> goal_;                // what is flown to; none: nothing by plans
+  std::optional<Goal::Kind> goal_;  // what is flown to; none: nothing by plans
   double stop_looked_at_ = -planner::base::kInfinity;
   double overhead_looked_at_ = -planner::base::kInfinity;
   bool overhead_free_ = false;  // then

@@ -7,7 +7,7 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr int kMostMessages = 64;      // of tracks, in a turn
+constexpr int kMostMessages = 64;     // of tracks, in a turn
 constexpr double kMissedAfter = 0.5;  // of the time that tracks coast, of silence of a writer
 
 }  // namespace

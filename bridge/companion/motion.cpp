@@ -70,7 +70,7 @@ void MotionControl::take_off(double now, supervisor::Phase phase, const vehicle:
 }
 
 std::optional<MotionControl::StopStart> MotionControl::stop_start(double now, const vehicle::VehicleState& state,
-                                                                 bool again) const {
+                                                                  bool again) const {
   const bool away = lost(now, state);
   if (stop_point_ && !away && !again) return std::nullopt;
   const bool says_nothing = away || (!stop_point_ && stream_.plan(now).empty());

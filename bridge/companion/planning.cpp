@@ -13,17 +13,17 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kInset = 0.2;          // of the flight volume, at most, that paths keep away from its bounds
-constexpr double kInsetMargin = 0.3;    // of the margin, likewise
-constexpr double kInsetSigmas = 2.0;    // of the estimate's position, likewise
-constexpr double kSinking = 0.7;        // m/s, of a landing: PX4's MPC_LAND_SPEED by default
-constexpr double kRejoining = 1.0;      // m/s², at most, of the way back to a plan that is kept
-constexpr double kFadeCurvature = 5.8;  // the largest of an OffsetForecast's, of an offset of 1 in a time of 1
-constexpr double kStopPeriod = 0.5;     // s, between the times at which the plan might be left for a stop
-constexpr double kLatestStop = 2.0;     // s, the last of them
+constexpr double kInset = 0.2;               // of the flight volume, at most, that paths keep away from its bounds
+constexpr double kInsetMargin = 0.3;         // of the margin, likewise
+constexpr double kInsetSigmas = 2.0;         // of the estimate's position, likewise
+constexpr double kSinking = 0.7;             // m/s, of a landing: PX4's MPC_LAND_SPEED by default
+constexpr double kRejoining = 1.0;           // m/s², at most, of the way back to a plan that is kept
+constexpr double kFadeCurvature = 5.8;       // the largest of an OffsetForecast's, of an offset of 1 in a time of 1
+constexpr double kStopPeriod = 0.5;          // s, between the times at which the plan might be left for a stop
+constexpr double kLatestStop = 2.0;          // s, the last of them
 constexpr std::array kLiftOff = {1.0, 3.0};  // s, after which a vehicle that is armed leaves the ground
-constexpr double kClimbing = 1.0;       // m/s, of a take-off
-constexpr double kCautious = 0.3;       // of the cruise speed, while what moves nearby is unexplained
+constexpr double kClimbing = 1.0;            // m/s, of a take-off
+constexpr double kCautious = 0.3;            // of the cruise speed, while what moves nearby is unexplained
 
 // The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
 planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& position, const Vec3& velocity) {
@@ -66,8 +66,7 @@ std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
   }
   if (!result) return result;
   ++plans_;
-  stays_at_end_ =
-      stays_at(end, result->plan) && (mission_.arrival == config::Arrival::kHold || lands_free(*result));
+  stays_at_end_ = stays_at(end, result->plan) && (mission_.arrival == config::Arrival::kHold || lands_free(*result));
   reporter_.plan(now, *result);
   if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
   return result;
@@ -126,8 +125,7 @@ void Planning::look_around(double now, Intake& intake, PlanJob& job) const {
 }
 
 // What is asked of any path of the vehicle; the request says where it begins and leads to.
-void Planning::demand(const vehicle::VehicleState& state, double margin,
-                      planner::horizon::PathRequest& request) const {
+void Planning::demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const {
   const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
   request.vehicle = mission_.vehicle;
   request.margin = in_world ? std::hypot(margin, state.position_sigma) : margin;
@@ -157,8 +155,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   const planner::base::TimedPoint reference = stream.reference(job.start);
   const planner::base::TimedPoint offset = job.offset.at(job.start);
   planner::horizon::PathRequest& request = job.request;
-  request.position = from_vehicle ? base::position_at(state.motion, job.start)
-                                  : Vec3(reference.position + offset.position);
+  request.position =
+      from_vehicle ? base::position_at(state.motion, job.start) : Vec3(reference.position + offset.position);
   request.velocity = from_vehicle ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
   request.target = goal.target;
   request.visit = goal.visit;
@@ -234,9 +232,8 @@ bool Planning::climbs_free(double now, Intake& intake) const {
   job.start = now;
   look_around(now, intake, job);
   const double radius = mission_.vehicle.radius;
-  std::erase_if(job.tracks, [&](const planner::base::Track& t) {
-    return (t.position - ground).norm() < t.radius + radius;
-  });
+  std::erase_if(job.tracks,
+                [&](const planner::base::Track& t) { return (t.position - ground).norm() < t.radius + radius; });
   job.forecasts.clear();  // they number the tracks; for so short a time the tracks do
   const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
   job.request.position = job.request.target = ground;

@@ -136,8 +136,9 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
   if (changed(said_.waiting, supervisor.waiting_for()) && !said_.waiting.empty()) event(now, "waiting", said_.waiting);
   if (changed(said_.arrived, supervisor.arrived()) && said_.phase == supervisor::Phase::kFlying)
     event(now, "arrived",
-          mission_.arrival == config::Arrival::kLand ? "going down as far as plans lead, to land where it stays free"
-                                                     : "it does not stay free there: holding out of the way of what comes");
+          mission_.arrival == config::Arrival::kLand
+              ? "going down as far as plans lead, to land where it stays free"
+              : "it does not stay free there: holding out of the way of what comes");
   if (changed(said_.hazard, supervisor.hazard()))
     event(now, said_.hazard.empty() ? "hazard_over" : "hazard", said_.hazard);
   announce_vehicle(now, supervisor, intake.state().battery, margin, tracking_error);

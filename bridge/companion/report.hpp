@@ -106,7 +106,8 @@ class FlightReporter {
     supervisor::Phase phase = supervisor::Phase::kDone;
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
-    bool evades = false, reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true, margin = false;
+    bool evades = false, reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true,
+         margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;

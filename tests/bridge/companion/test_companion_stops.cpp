@@ -114,7 +114,7 @@ TEST(CompanionStops, APlanForSomethingElseIsNotFlown) {
   const double x = loop.last().position.x();
   loop.run(2.0);
   EXPECT_LT(loop.last().position.x(), x + 1.3);  // the plan to the waypoint came 0.2 s later
-  EXPECT_LT(loop.last().velocity.norm(), 0.5);  // at rest, and handed over
+  EXPECT_LT(loop.last().velocity.norm(), 0.5);   // at rest, and handed over
   EXPECT_TRUE(loop.companion.supervisor().done());
 }
 

@@ -202,8 +202,7 @@ TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {
       {"local position", Level::kFault, "never heard",
        [](LinkFindings& h) { h.state.motion.stamp = h.state.motion.received = base::kNever; }},
       {"local position", Level::kFault, "not valid", [](LinkFindings& h) { h.state.local_position_ok = false; }},
-      {"local position", Level::kOk, "5.0 m above",
-       [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},
+      {"local position", Level::kOk, "5.0 m above", [](LinkFindings& h) { h.state.motion.value.position.z() = 5.0; }},
       {"origin", Level::kWarning, "not told", [](LinkFindings& h) { h.state.origin.reset(); }},
       {"origin", Level::kWarning, "0.000000",
        [](LinkFindings& h) {
