@@ -167,6 +167,15 @@ supervisor::FlightContext Companion::context(double now) {
   const bool may_take_off =
       supervisor_.phase() == supervisor::Phase::kWaiting || supervisor_.phase() == supervisor::Phase::kEngaging;
   context.overhead_free = !may_take_off || state.in_air || overhead_free(now);
+  const Vec3& position = state.motion.value.position;
+  const planner::base::Box& fence = mission_.geofence;
+  was_inside_ = was_inside_ || (supervisor_.flight_began() && fence.contains(position));
+  if (was_inside_) {
+    const Vec3 beside = (fence.min - position).cwiseMax(position - fence.max);
+    context.outside = std::max(beside.head<2>().maxCoeff(), fence.min.z() - position.z());
+    context.above = position.z() - fence.max.z();
+  }
+  context.cannot_follow = motion_.cannot_follow(now);
   context.at_takeoff_height = motion_.at_takeoff_height(state);
   if (supervisor_.phase() == supervisor::Phase::kFlying && route_.pass(state.motion.value.position))
     reporter_.event(now, "waypoint",
@@ -224,7 +233,10 @@ std::optional<Goal::Kind> Companion::goal_kind(supervisor::Decision::Motion moti
 }
 
 Goal Companion::goal(double now, Goal::Kind kind) {
-  if (kind == Goal::Kind::kStop) return {kind, *motion_.stop_point()};
+  if (kind == Goal::Kind::kStop) {  // and back inside
+    const planner::base::Box volume = flight_volume(mission_);
+    return {kind, motion_.stop_point()->cwiseMax(volume.min).cwiseMin(volume.max)};
+  }
   if (kind == Goal::Kind::kClimb) return {kind, *motion_.takeoff_point()};
   // Who has arrived stays.
   if (supervisor_.arrived()) return {kind, end()};

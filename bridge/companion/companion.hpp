@@ -79,6 +79,7 @@ class Companion {
   std::optional<Goal::Kind> goal_;  // what is flown to; none: nothing by plans
   double stop_looked_at_ = -planner::base::kInfinity;
   double overhead_looked_at_ = -planner::base::kInfinity;
+  bool was_inside_ = false;     // the geofence, in this flight
   bool overhead_free_ = false;  // then
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kBackOff = 0.7;           // of the share that was asked for when the reference was lost
 constexpr double kLeastShare = 0.25;       // that is asked for
+constexpr double kHelplessShare = 0.3;     // asked for, of what loses its reference for all that
 constexpr double kRecovery = 0.01;         // 1/s, of the share
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
@@ -150,6 +151,7 @@ void MotionControl::observe(double now, const vehicle::VehicleState& state) {
   largest = std::max(largest, offset.norm());
   const bool was_lost = std::exchange(was_lost_, offset.norm() > kLostReference);
   if (was_lost_ && !was_lost) {
+    if (share(now) < kHelplessShare) helpless_at_ = now;
     share_ = std::max(kLeastShare, kBackOff * share(now));
     lost_at_ = now;
   }

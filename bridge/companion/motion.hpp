@@ -63,6 +63,8 @@ class MotionControl {
   [[nodiscard]] double error(const vehicle::VehicleState& state) const;
   /// So far from its reference the vehicle has lost it. Where it is not known where it is, it has not.
   [[nodiscard]] bool lost(double now, const vehicle::VehicleState& state) const;
+  /// It has just lost it again, though no more than the least was asked for: what drives it is stronger.
+  [[nodiscard]] bool cannot_follow(double now) const { return now - helpless_at_ < kHelpless; }
   /// The share of the stated acceleration and cruise speed that is asked for: less after each time that the reference
   /// was lost, for a vehicle that cannot follow, and slowly all again.
   [[nodiscard]] double share(double now) const;
@@ -77,6 +79,7 @@ class MotionControl {
 
  private:
   static constexpr double kLostReference = 1.2;  // m
+  static constexpr double kHelpless = 2.0;       // s, after which it is tried again
   void take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state);
   [[nodiscard]] bool known(double now, const vehicle::VehicleState& state) const;
   [[nodiscard]] double heading(double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
@@ -99,6 +102,7 @@ class MotionControl {
   bool was_lost_ = false;
   double share_ = 1.0;  // at lost_at_
   double lost_at_ = 0.0;
+  double helpless_at_ = -planner::base::kInfinity;
   std::optional<double> last_sent_;
   bool new_plan_ = false;  // since then
   std::optional<UnsentTrack> unsent_track_;

@@ -10,6 +10,7 @@ namespace {
 constexpr double kHeartbeatLost = 5.0;
 constexpr double kUnsent = 0.2;            // s
 constexpr double kLatest = 0.5;            // s, that a position is on its way: at 4 m/s it is 2 m behind
+constexpr double kBreach = 1.0;            // m; less is the way back of a vehicle that is beside its path
 constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each second without one
 
 using S = Situation;
@@ -28,6 +29,9 @@ constexpr Hazard kHazards[] = {
     {"the autopilot's failsafe flies", [](const S& s) { return s.failsafe; }, kBrake, kHold, /*names_mode=*/true},
     {"the autopilot has lost its position", [](const S& s) { return !s.state.local_position_ok; }, kBrake, kHold},
     {"the autopilot has lost its GPS", [](const S& s) { return s.state.gps_lost; }, kBrake, kHold},
+    {"the vehicle has left the geofence", [](const S& s) { return s.flight.outside > kBreach; }, kBrake, kHold},
+    {"the vehicle is above the geofence", [](const S& s) { return s.flight.above > kBreach; }, kBrake, kHold},
+    {"the vehicle cannot follow its setpoints", [](const S& s) { return s.flight.cannot_follow; }, kBrake, kHold},
     {"the obstacle tracks are stale",
      [](const S& s) {
        return s.tracks.required && (!s.flight.newest_tracks || s.now - *s.flight.newest_tracks > s.tracks.timeout_s);
