@@ -133,12 +133,13 @@ TrackPolicy read_tracks(const Value& value) {
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "connection", "vehicle", "takeoff_height", "min_height", "heights", "waypoints",
-                 "arrival", "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
+                {"format", "name", "connection", "system_id", "vehicle", "takeoff_height", "min_height", "heights",
+                 "waypoints", "arrival", "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
                 "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
+  if (const auto id = map.find("system_id")) mission.system_id = id->integer(closed(1, 255));
   NamedVehicle vehicle = read_vehicle(map.at("vehicle", "the name of a vehicle or a map"), file, vehicles);
   mission.vehicle_name = std::move(vehicle.name);
   mission.vehicle = vehicle.limits;

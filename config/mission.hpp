@@ -38,6 +38,7 @@ struct TrackPolicy {
 struct Mission {
   std::string name;
   std::string connection;    ///< a MAVSDK URL
+  int system_id = 0;         ///< of the autopilot, MAVLink; 0: that of the only one there
   std::string vehicle_name;  ///< "inline" where the file gives a map
   planner::base::VehicleLimits vehicle;
   double takeoff_height = 1.5;  ///< above the ground at take-off
@@ -59,9 +60,9 @@ struct Mission {
 /// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does, and finds vehicles as it does.
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
-/// takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min and max
-/// when given), dds.domain, dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds), intents,
-/// time_limit.
+/// system_id, takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min
+/// and max when given), dds.domain, dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds),
+/// intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
 /// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. With heights above the ground a waypoint

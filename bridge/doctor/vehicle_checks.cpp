@@ -50,8 +50,11 @@ void inspect_identity(const config::Mission& mission, const LinkFindings& heard,
     std::string systems;
     for (const std::uint32_t id : heard.info.other_systems)
       systems += (systems.empty() ? "" : ", ") + std::to_string(id);
-    checks.push_back({Level::kWarning, "other autopilots", "system " + systems + " on the same connection",
-                      "give each vehicle its own port: jink stays with the first that it hears"});
+    const bool named = mission.system_id != 0;
+    checks.push_back(
+        {named ? Level::kWarning : Level::kFault, "other autopilots", "system " + systems + " on the same connection",
+         named ? "give each vehicle its own port"
+               : "jink arms none of several: name one with the mission's system_id, or give each its own port"});
   }
   if (heard.state.reboots > 0) {
     checks.push_back({Level::kFault, "autopilot time", fmt::format("began anew {} times", heard.state.reboots),

@@ -71,6 +71,7 @@ mavsdk_system_t* mavsdk_get_systems(mavsdk_t mavsdk, size_t* count);
 void mavsdk_free_systems_array(mavsdk_system_t* systems);
 
 uint32_t mavsdk_system_get_system_id(mavsdk_system_t system);
+bool mavsdk_system_has_autopilot(mavsdk_system_t system);
 void mavsdk_system_destroy(mavsdk_system_t system);
 
 mavsdk_mavlink_direct_t mavsdk_mavlink_direct_create(mavsdk_system_t system);

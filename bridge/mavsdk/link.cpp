@@ -22,7 +22,7 @@ constexpr int kFrameLocalNed = 1;                 // MAV_FRAME_LOCAL_NED
 constexpr int kIgnoreYawRate = 0x800;             // the only bit set in the setpoint's type_mask: all else is meant
 constexpr double kWaitSlice_s = 0.1;
 constexpr double kMaxMagnitude = 1e6;  // of a setpoint's components: far outside any flight, inside float
-constexpr auto kLookForSystems = std::chrono::milliseconds(500);
+constexpr auto kLookForSystems = std::chrono::milliseconds(200);
 constexpr int kParameterTries = 3;
 constexpr std::size_t kLongestParameterName = 16;
 
@@ -77,7 +77,8 @@ void MavsdkLink::Impl::Listener::on_message(mavsdk_mavlink_message_t message, vo
   mavsdk_mavlink_direct_mavlink_message_destroy(&message);
 }
 
-MavsdkLink::Impl::Impl(const std::string& url, const base::Clock& clock) : clock_(clock), created_(clock.now()) {
+MavsdkLink::Impl::Impl(const std::string& url, std::uint32_t wanted_system, const base::Clock& clock)
+    : clock_(clock), created_(clock.now()), wanted_system_(wanted_system) {
   capture_mavsdk_log();
   configuration_.reset(mavsdk_configuration_create_with_component_type(MAVSDK_COMPONENT_TYPE_COMPANION_COMPUTER));
   mavsdk_configuration_set_component_id(configuration_.get(), kOwnComponent);
@@ -107,8 +108,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
   const double deadline = clock_.now() + timeout_s;
   while (!ready_ && !stop.stop_requested()) {
     const double left = deadline - clock_.now();
-    SystemHandle found(mavsdk_first_autopilot(mavsdk_.get(), std::max(0.0, std::min(left, kWaitSlice_s))));
-    if (found) {
+    if (SystemHandle found = find_autopilot(std::max(0.0, std::min(left, kWaitSlice_s)))) {
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
       join_system();
@@ -140,6 +140,26 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
   return ready_;
 }
 
+// The one that is wanted, or else the first; null: not within that time.
+SystemHandle MavsdkLink::Impl::find_autopilot(double timeout_s) {
+  if (wanted_system_ == 0) return SystemHandle(mavsdk_first_autopilot(mavsdk_.get(), timeout_s));
+  for (SystemHandle& system : systems()) {
+    if (mavsdk_system_get_system_id(system.get()) == wanted_system_ && mavsdk_system_has_autopilot(system.get()))
+      return std::move(system);
+  }
+  std::this_thread::sleep_for(std::chrono::duration<double>(timeout_s));
+  return {};
+}
+
+std::vector<SystemHandle> MavsdkLink::Impl::systems() const {
+  std::size_t count = 0;
+  mavsdk_system_t* const found = mavsdk_get_systems(mavsdk_.get(), &count);
+  std::vector<SystemHandle> systems;
+  for (std::size_t i = 0; found != nullptr && i < count; ++i) systems.emplace_back(found[i]);
+  if (found != nullptr) mavsdk_free_systems_array(found);
+  return systems;
+}
+
 // As a component of the vehicle's own system: ground stations show what is said in that one.
 void MavsdkLink::Impl::join_system() {
   mavsdk_configuration_set_system_id(configuration_.get(), system_id_);
@@ -155,15 +175,11 @@ void MavsdkLink::Impl::watch_other_systems(const std::stop_token& stop) {
   std::condition_variable_any never;
   std::unique_lock lock(nobody_elses);
   while (!stop.stop_requested()) {
-    std::size_t count = 0;
-    mavsdk_system_t* const systems = mavsdk_get_systems(mavsdk_.get(), &count);
-    for (std::size_t i = 0; systems != nullptr && i < count; ++i) {
-      SystemHandle system(systems[i]);
+    for (SystemHandle& system : systems()) {
       if (!known.insert(mavsdk_system_get_system_id(system.get())).second) continue;
       others_.push_back(std::make_unique<Listener>(*this, std::move(system)));
       others_.back()->subscribe(kInterests);
     }
-    if (systems != nullptr) mavsdk_free_systems_array(systems);
     (void)never.wait_for(lock, stop, kLookForSystems, [] { return false; });
   }
 }
@@ -303,8 +319,8 @@ bool MavsdkLink::Impl::next_adsb(mavlink::AdsbReport& report) {
   return true;
 }
 
-MavsdkLink::MavsdkLink(const std::string& connection_url, const base::Clock& clock)
-    : impl_(std::make_unique<Impl>(connection_url, clock)) {}
+MavsdkLink::MavsdkLink(const std::string& connection_url, const base::Clock& clock, std::uint32_t wanted_system)
+    : impl_(std::make_unique<Impl>(connection_url, wanted_system, clock)) {}
 MavsdkLink::~MavsdkLink() = default;
 
 bool MavsdkLink::wait_for_autopilot(double timeout_s, const std::stop_token& stop) {

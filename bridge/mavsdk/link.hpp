@@ -59,10 +59,10 @@ class MavsdkLink final : public vehicle::VehicleLink {
   static constexpr double kReboot_s = mavlink::AutopilotTelemetry::kReboot_s;
 
   /// Opens `connection_url` (udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT, serial:///dev/NAME:BAUD, ...)
-  /// and waits for nobody. `clock` must outlive the link.
+  /// and waits for nobody. `clock` must outlive the link. `wanted_system`: the autopilot's, MAVLink; 0: the first.
   /// @throws std::runtime_error, one line with the URL and the reason, when it is malformed or cannot be opened. A TCP
   /// peer that does not answer yet is no error: it is tried again in the background.
-  MavsdkLink(const std::string& connection_url, const base::Clock& clock);
+  MavsdkLink(const std::string& connection_url, const base::Clock& clock, std::uint32_t wanted_system = 0);
   ~MavsdkLink() override;
   MavsdkLink(const MavsdkLink&) = delete;
   MavsdkLink& operator=(const MavsdkLink&) = delete;

@@ -27,7 +27,7 @@ namespace jink::bridge::mavsdk {
 
 class MavsdkLink::Impl {
  public:
-  Impl(const std::string& url, const base::Clock& clock);
+  Impl(const std::string& url, std::uint32_t wanted_system, const base::Clock& clock);
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -99,6 +99,8 @@ class MavsdkLink::Impl {
     double largest_gap = 0.0;
   };
 
+  SystemHandle find_autopilot(double timeout_s);
+  [[nodiscard]] std::vector<SystemHandle> systems() const;
   void join_system();
   void watch_other_systems(const std::stop_token& stop);
   bool transmit(const char* name, const nlohmann::json& fields) const;
@@ -152,6 +154,7 @@ class MavsdkLink::Impl {
   std::mutex wait_mutex_;            // serialises wait_for_autopilot
   std::mutex parameter_mutex_;       // serialises read_parameters
   std::atomic<bool> ready_ = false;  // autopilot_ stands; set once
+  const std::uint32_t wanted_system_;
   std::uint32_t system_id_ = 0;
 
   // In the order of construction; MAVSDK aborts when they are destroyed in another than the reverse one.

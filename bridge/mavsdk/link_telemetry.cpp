@@ -199,6 +199,7 @@ vehicle::VehicleState MavsdkLink::Impl::state() const {
   const std::scoped_lock lock(mutex_);
   vehicle::VehicleState state = telemetry_.state(now);
   state.system_id = autopilot_system_id();
+  if (!other_autopilots_.empty()) state.other_system_id = *other_autopilots_.begin();
   return state;
 }
 

@@ -43,6 +43,7 @@ struct Waiting {
   MissingPeer absent = MissingPeer::kNone;  ///< who is waited for; kNone: the autopilot's health
   std::optional<double> since;              ///< for that; none: before the first step
   std::optional<double> ready_since{};      ///< but for the ground's height
+  std::optional<double> heard_since{};      ///< the autopilot
 };
 struct Engaging {
   static constexpr Phase kPhase = Phase::kEngaging;

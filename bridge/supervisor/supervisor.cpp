@@ -13,6 +13,7 @@ constexpr double kSettling = 0.3;       // s, within which a request acts; PX4 t
 constexpr double kReadyAgain = 10.0;    // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;  // s
 constexpr double kHomeTimeout = 3.0;    // s; PX4 tells its home every 2 s
+constexpr double kOthersTime = 1.5;     // s, in which each autopilot says something; PX4 sends a heartbeat a second
 
 using Motion = Decision::Motion;
 
@@ -79,6 +80,7 @@ MissingPeer Supervisor::find_missing(const Input& in) {
   waiting_for_.clear();
   if (!autopilot) {
     waiting_for_ = "an autopilot's heartbeat on " + mission_.connection;
+    if (mission_.system_id != 0) waiting_for_ += ", system " + std::to_string(mission_.system_id);
     return MissingPeer::kAutopilot;
   }
   if (!tracks) {
@@ -99,22 +101,38 @@ MissingPeer Supervisor::find_missing(const Input& in) {
   return MissingPeer::kNone;
 }
 
+std::string Supervisor::forbidden(const Input& in) const {
+  const vehicle::VehicleState& state = in.state;
+  if (mission_.system_id == 0 && state.other_system_id != 0) {
+    return "systems " + std::to_string(state.system_id) + " and " + std::to_string(state.other_system_id) +
+           " are autopilots on " + mission_.connection + ": the mission's system_id is to name one";
+  }
+  return in.flight.misplaced;
+}
+
 Decision Supervisor::step(Waiting& phase, const Input& in) {
   const MissingPeer absent = find_missing(in);
+  if (absent == MissingPeer::kAutopilot) phase.heard_since.reset();
+  if (!phase.heard_since && absent != MissingPeer::kAutopilot) phase.heard_since = in.now;
+  if (waiting_for_.empty() && mission_.system_id == 0 && !in.state.in_air && in.now - *phase.heard_since < kOthersTime)
+    waiting_for_ = "other autopilots to speak up, as the mission names none (system_id)";
   if (waiting_for_.empty() && !in.flight.ground_known) {
     if (!phase.ready_since) phase.ready_since = in.now;
     if (in.now - *phase.ready_since < kHomeTimeout) waiting_for_ = "the autopilot's home, to know where the ground is";
   }
   if (waiting_for_.empty()) {
-    if (!in.flight.misplaced.empty()) {
-      abort(in.flight.misplaced);
+    if (const std::string why = forbidden(in); !why.empty()) {
+      abort(why);
       return {};
     }
     mode_changes_.engage(in.state);
     phase_ = Engaging{};
     return {Motion::kStay, {}};
   }
-  if (!phase.since || absent != phase.absent) phase = {absent, in.now, phase.ready_since};
+  if (!phase.since || absent != phase.absent) {
+    phase.absent = absent;
+    phase.since = in.now;
+  }
   const bool peer = absent != MissingPeer::kNone;
   if (in.now - *phase.since > (peer ? settings_.peer_timeout : settings_.health_timeout))
     phase_ = Done{{Outcome::kAborted, "waited in vain for " + waiting_for_, {}}, absent};
@@ -129,6 +147,10 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
     flight_began_ = now;
     // One that was taken over while it sank climbs first, too.
     phase_ = state.in_air && !flight.low ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
+    return decision;
+  }
+  if (const std::string why = forbidden(in); !why.empty()) {
+    stop(now, Outcome::kAborted, why);
     return decision;
   }
   if (phase.request.exhausted(now, state)) {

@@ -61,6 +61,7 @@ struct VehicleState {
   std::optional<frames::Geodetic> origin;  ///< of the local frame; none: not told yet
   std::optional<double> home_height;  ///< z of home, which the autopilot takes from where it is armed; none: not told
   std::uint32_t system_id = 0;        ///< MAVLink system of the autopilot; 0: not found yet
+  std::uint32_t other_system_id = 0;  ///< of another autopilot on the connection; 0: there is none
   /// s, that a setpoint is on its way to the autopilot, as far as the link can tell; `motion`'s stamp has the way back
   /// taken off.
   double link_delay = 0.0;

@@ -61,6 +61,14 @@ TEST(LoadMission, HeightsAreAboveWhatItSays) {
   EXPECT_EQ(m.waypoints[0].z(), 488.5);
 }
 
+TEST(LoadMission, NamesTheAutopilotOrTakesTheOnlyOne) {
+  const Folder folder;
+  const std::string head =
+      "format: jink-mission/1\nname: m\nconnection: udpin://:14540\nvehicle: px4\nwaypoints: [[1, 2, 3]]\n";
+  EXPECT_EQ(load_mission(folder.write("m.yaml", head)).system_id, 0);
+  EXPECT_EQ(load_mission(folder.write("m.yaml", head + "system_id: 255\n")).system_id, 255);
+}
+
 TEST(LoadMission, ALocalFrameHasHeightsOfItsOwn) {
   Mission given;
   given.waypoints = {{1, 2, 5}};
@@ -149,6 +157,8 @@ TEST(LoadMission, RefusesBadConnections) {
       {url, "serial:///dev/ttyACM0:fast", 3, "connection", "serial:///dev/ttyACM0:fast", "has no valid baud rate"},
       {url, "", 3, "connection", "null", "is empty; expected text"},
       {"connection: " + url + "\n", "", 1, "connection", "", "missing; expected a MAVSDK URL"},
+      {"connection: " + url, "connection: " + url + "\nsystem_id: 0", 4, "system_id", "0", "[1, 255]"},
+      {"connection: " + url, "connection: " + url + "\nsystem_id: 256", 4, "system_id", "256", "[1, 255]"},
   };
   for (const BadCase& bad : cases) expect_refused(kValidMission, bad, try_mission);
 }

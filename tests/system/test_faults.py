@@ -104,12 +104,13 @@ def random_bytes(flight):
             time.sleep(0.001)
 
 
-def other_system(autopilot, system):
+def other_system(autopilot, system, at_once=False):
     """Another MAVLink system on the same port: positions elsewhere, a mode of its own."""
     def during(flight):
         from pymavlink import mavutil
         from pymavlink.dialects.v20 import common as mavlink
-        flight.wait_for_flight(0.0)
+        if not at_once:
+            flight.wait_for_flight(0.0)
         link = mavutil.mavlink_connection(f"udpout:127.0.0.1:{14540 + flight.arena.instance}", source_system=system,
                                           source_component=1, dialect="common")
         for i in range(150):
@@ -215,6 +216,8 @@ CASES = [
     Case("random_bytes", during=random_bytes),
     Case("wrong_sysid", during=other_system(8, 77)),
     Case("two_autopilots", during=other_system(12, 9)),
+    Case("two_autopilots_before_arming", during=other_system(12, 9, at_once=True), status=1, reason="system_id",
+         events=("second_autopilot",), end="ground"),
     Case("refuses_to_arm", [at(0, "refuse_arming")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("refuses_offboard", [at(0, "refuse_offboard")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("no_position_on_dds", status=1, reason="local position", events=("waiting",), end="ground", mission={"state": "dds"}),

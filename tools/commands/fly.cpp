@@ -162,7 +162,8 @@ int run(const FlyOptions& options) {
   std::unique_ptr<log::FlightLog> log;
   std::unique_ptr<bridge::mavsdk::MavsdkLink> link;
   try {
-    link = std::make_unique<bridge::mavsdk::MavsdkLink>(mission.connection, clock);
+    link = std::make_unique<bridge::mavsdk::MavsdkLink>(mission.connection, clock,
+                                                        static_cast<std::uint32_t>(mission.system_id));
   } catch (const std::runtime_error& error) {
     throw cli::UsageError(options.mission + ": key 'connection': " + error.what());
   }

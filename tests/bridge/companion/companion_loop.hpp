@@ -17,6 +17,7 @@ struct Loop {
   static config::Mission mission() {
     config::Mission m;
     m.connection = "udpin://127.0.0.1:14540";
+    m.system_id = 1;
     m.takeoff_height = 2.0;
     m.min_height = 1.0;
     m.waypoints = {{20, 0, 2}};

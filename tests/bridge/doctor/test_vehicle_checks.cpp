@@ -95,7 +95,7 @@ struct Case {
 TEST(Doctor, NamesTheOneThingThatIsWrongWithTheVehicle) {
   const std::vector<Case> cases{
       {"autopilot", Level::kFault, "MAV_AUTOPILOT 3", [](LinkFindings& h) { h.info.autopilot = 3; }},
-      {"other autopilots", Level::kWarning, "system 2, 9",
+      {"other autopilots", Level::kFault, "system 2, 9",
        [](LinkFindings& h) {
          h.info.other_systems = {2, 9};
        }},

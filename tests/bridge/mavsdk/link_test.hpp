@@ -43,14 +43,18 @@ class MavsdkLinkTest : public ::testing::Test {
  protected:
   // A link that listens and a peer that speaks to it.
   void connect(const std::vector<std::string>& peer_options = {}) {
+    open(peer_options);
+    ASSERT_TRUE(link_->wait_for_autopilot(30.0));
+  }
+
+  void open(const std::vector<std::string>& peer_options = {}, std::uint32_t wanted_system = 0) {
     const std::string port = std::to_string(free_udp_port());
-    link_ = std::make_unique<mavsdk::MavsdkLink>("udpin://127.0.0.1:" + port, clock_);
+    link_ = std::make_unique<mavsdk::MavsdkLink>("udpin://127.0.0.1:" + port, clock_, wanted_system);
     const std::string root = JINK_SOURCE_DIR;
     std::vector<std::string> arguments{root + "/.venv/bin/python", root + "/tests/bridge/mavsdk/px4_peer.py", "--port",
                                        port};
     arguments.insert(arguments.end(), peer_options.begin(), peer_options.end());
     peer_ = std::make_unique<ChildProcess>(arguments);
-    ASSERT_TRUE(link_->wait_for_autopilot(30.0));
   }
 
   bool state_becomes(const std::function<bool(const vehicle::VehicleState&)>& condition) {

@@ -186,11 +186,23 @@ TEST_F(MavsdkFaultTest, ASecondAutopilotChangesNothingAndIsSaid) {
   EXPECT_FALSE(s.failsafe);
   EXPECT_EQ(s.mode, FlightMode::kHold);
   EXPECT_EQ(s.system_id, 1U);
+  EXPECT_EQ(s.other_system_id, 7U);
   EXPECT_EQ(s.estimate_resets, 0U);
   link_->request(Command::kArm);
   EXPECT_TRUE(next_report().accepted);
   EXPECT_EQ(heard_command(400)["target"], json({1, 1}));
   EXPECT_EQ(link_->counts().other_autopilots, 1U);
+}
+
+TEST_F(MavsdkFaultTest, TheNamedAutopilotIsWaitedForAndNoOtherTaken) {
+  open({"--heartbeat-hz", "5"}, 7);
+  EXPECT_FALSE(link_->wait_for_autopilot(2.0));
+  peer_->order("other 7");
+  ASSERT_TRUE(link_->wait_for_autopilot(30.0));
+  EXPECT_TRUE(notice_comes("second_autopilot", "system 1"));
+  EXPECT_TRUE(state_becomes([](const VehicleState& s) { return s.heartbeat_stamp >= 0.0; }));
+  EXPECT_EQ(link_->state().system_id, 7U);
+  EXPECT_EQ(link_->state().other_system_id, 1U);
 }
 
 TEST_F(MavsdkFaultTest, RandomBytesAreNothing) {

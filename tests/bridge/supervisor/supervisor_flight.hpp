@@ -17,6 +17,7 @@ struct Flight {
   static config::Mission mission() {
     config::Mission m;
     m.connection = "udpin://127.0.0.1:14540";
+    m.system_id = 1;
     m.vehicle_name = "ardrone2";
     m.waypoints = {{20, 0, 1.5}};
     m.arrival = config::Arrival::kHold;

@@ -16,6 +16,48 @@ using testing::Flight;
 
 // ---- waiting
 
+// PX4's heartbeats are a second apart: who is alone is known after that.
+TEST(Supervisor, WithoutASystemIdItListensForOtherAutopilotsFirst) {
+  config::Mission m = Flight::mission();
+  m.system_id = 0;
+  Flight flight(m);
+  flight.run(1.4);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kWaiting);
+  EXPECT_NE(flight.supervisor.waiting_for().find("other autopilots"), std::string::npos);
+  flight.run(0.2);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
+  Flight airborne(m);  // taken over at once, as it is in nobody's hands
+  airborne.state.in_air = airborne.state.armed = true;
+  airborne.turn();
+  EXPECT_EQ(airborne.supervisor.phase(), Phase::kEngaging);
+}
+
+TEST(Supervisor, OfTwoAutopilotsNoneIsArmedThatIsNotNamed) {
+  for (const double comes : {0.0, 1.0, 1.7}) {  // or taken over
+    for (const bool in_air : {false, true}) {
+      SCOPED_TRACE(comes);
+      config::Mission m = Flight::mission();
+      m.system_id = 0;
+      Flight flight(m);
+      flight.state.in_air = flight.state.armed = in_air && comes == 0.0;
+      flight.run(comes);
+      flight.state.system_id = 1;
+      flight.state.other_system_id = 9;
+      flight.run(12.0);
+      EXPECT_EQ(flight.asked(vehicle::Command::kArm), 0);
+      EXPECT_EQ(flight.supervisor.outcome(), Outcome::kAborted);
+      EXPECT_NE(flight.supervisor.reason().find("systems 1 and 9 are autopilots on udpin://127.0.0.1:14540"),
+                std::string::npos)
+          << flight.supervisor.reason();
+    }
+  }
+  Flight named;
+  named.state.system_id = 1;
+  named.state.other_system_id = 9;
+  named.turn();
+  EXPECT_EQ(named.supervisor.phase(), Phase::kEngaging);
+}
+
 struct Missing {
   const char* what;
   std::function<void(Flight&)> take_away;
