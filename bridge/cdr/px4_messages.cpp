@@ -5,6 +5,7 @@
 
 #include "bridge/cdr/input.hpp"
 #include "bridge/frames/conversions.hpp"
+#include "bridge/vehicle/px4.hpp"
 
 namespace jink::bridge::cdr::px4 {
 
@@ -97,7 +98,9 @@ void take_rest(CdrInput& input, Layout layout, LocalPosition& message) {
     input.take<std::uint8_t>();  // dist_bottom_reset_counter
     input.take<std::uint8_t>();  // dist_bottom_sensor_bitfield
   }
-  skip_floats(input, 4);  // eph, epv, evh, evv
+  message.horizontal_accuracy = take_float(input);
+  message.vertical_accuracy = take_float(input);
+  skip_floats(input, 2);  // evh, evv
   message.dead_reckoning = input.take<bool>();
 }
 
@@ -166,6 +169,8 @@ void LocalPositionFilter::apply(vehicle::VehicleState& state, double now) const 
   if (valid_) {
     state.motion = {
         {frames::enu_from_ned(valid_->position_ned), frames::enu_from_ned(valid_->velocity_ned)}, valid_at_, valid_at_};
+    const double sigma = vehicle::px4::position_sigma(valid_->horizontal_accuracy, valid_->vertical_accuracy);
+    if (sigma > 0.0) state.position_sigma = sigma;
     if (std::isfinite(valid_->heading)) state.yaw = frames::yaw_enu_from_heading(valid_->heading);
   }
   const bool held = valid_ && now - valid_at_ <= kMaxAge_s && valid(*newest_);

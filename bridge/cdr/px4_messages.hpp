@@ -23,7 +23,9 @@ struct LocalPosition {
   Vec3 shift_ned = Vec3::Zero();  ///< of the newest reset of each counter: delta_xy, delta_z
   std::uint8_t xy_resets = 0;     ///< counters that wrap
   std::uint8_t z_resets = 0;
-  double heading = 0.0;  ///< clockwise from north; NaN: not known
+  double heading = 0.0;              ///< clockwise from north; NaN: not known
+  double horizontal_accuracy = 0.0;  ///< eph: as in vehicle::px4::position_sigma
+  double vertical_accuracy = 0.0;    ///< epv; likewise
   bool dead_reckoning = false;
   bool global = false;  ///< xy_global and z_global: the local frame's origin is known
   frames::Geodetic origin;
@@ -52,8 +54,8 @@ class LocalPositionFilter {
   [[nodiscard]] bool update(const LocalPosition& message, double now);
 
   /// Puts position, velocity, yaw, their stamp, estimate_resets, estimate_shift, local_position_ok and, once known,
-  /// origin into `state`, in ENU. What is missing is added to `state.health`: "local position", "heading",
-  /// "dead reckoning".
+  /// origin and position_sigma into `state`, in ENU. What is missing is added to `state.health`: "local position",
+  /// "heading", "dead reckoning".
   void apply(vehicle::VehicleState& state, double now) const;
 
  private:

@@ -46,13 +46,9 @@ bool stays_at(const Vec3& place, const planner::verify::Plan& plan) {
 }
 
 // What is placed in the world's frame is off, for the vehicle, by what the vehicle's own place is.
-void blur(PlanJob& job, double sigma) {
-  const auto add = [sigma](auto& all) {
-    for (auto& one : all) one.position_sigma = std::hypot(one.position_sigma, sigma);
-  };
-  add(job.tracks);
-  add(job.forecasts);
-  add(job.paths);
+template <typename All>
+void blur(All& all, double sigma) {
+  for (auto& one : all) one.position_sigma = std::hypot(one.position_sigma, sigma);
 }
 
 }  // namespace
@@ -121,7 +117,11 @@ void Planning::start(double now, Intake& intake, const MotionControl& motion, co
 void Planning::look_around(double now, Intake& intake, PlanJob& job) const {
   job.tracks = intake.table().predict(job.start, settings_.horizon.acceleration_trust, &job.forecasts);
   if (const team::Team* team = intake.team()) job.paths = team->paths(now, job.start);
-  if (mission_.tracks.sensed_from == config::SensedFrom::kWorld) blur(job, intake.state().position_sigma);
+  const double sigma = intake.state().position_sigma;
+  blur(job.paths, sigma);  // others tell theirs in the world
+  if (mission_.tracks.sensed_from != config::SensedFrom::kWorld) return;
+  blur(job.tracks, sigma);
+  blur(job.forecasts, sigma);
 }
 
 // What is asked of any path of the vehicle; the request says where it begins and leads to.

@@ -101,16 +101,17 @@ MissingPeer Supervisor::find_missing(const Input& in) {
   return MissingPeer::kNone;
 }
 
-std::string Supervisor::forbidden(const Input& in) const {
-  const vehicle::VehicleState& state = in.state;
-  if (mission_.system_id == 0 && state.other_system_id != 0) {
-    return "systems " + std::to_string(state.system_id) + " and " + std::to_string(state.other_system_id) +
-           " are autopilots on " + mission_.connection + ": the mission's system_id is to name one";
-  }
-  return in.flight.misplaced;
+std::string Supervisor::ambiguity(const vehicle::VehicleState& state) const {
+  if (mission_.system_id != 0 || state.other_system_id == 0) return {};
+  return "systems " + std::to_string(state.system_id) + " and " + std::to_string(state.other_system_id) +
+         " are autopilots on " + mission_.connection + ": the mission's system_id is to name one";
 }
 
 Decision Supervisor::step(Waiting& phase, const Input& in) {
+  if (const std::string why = ambiguity(in.state); !why.empty()) {
+    abort(why);
+    return {};
+  }
   const MissingPeer absent = find_missing(in);
   if (absent == MissingPeer::kAutopilot) phase.heard_since.reset();
   if (!phase.heard_since && absent != MissingPeer::kAutopilot) phase.heard_since = in.now;
@@ -121,8 +122,8 @@ Decision Supervisor::step(Waiting& phase, const Input& in) {
     if (in.now - *phase.ready_since < kHomeTimeout) waiting_for_ = "the autopilot's home, to know where the ground is";
   }
   if (waiting_for_.empty()) {
-    if (const std::string why = forbidden(in); !why.empty()) {
-      abort(why);
+    if (!in.flight.misplaced.empty()) {
+      abort(in.flight.misplaced);
       return {};
     }
     mode_changes_.engage(in.state);
@@ -149,8 +150,8 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
     phase_ = state.in_air && !flight.low ? FlightPhase(Flying{now}) : FlightPhase(Climbing{now});
     return decision;
   }
-  if (const std::string why = forbidden(in); !why.empty()) {
-    stop(now, Outcome::kAborted, why);
+  if (std::string why = ambiguity(state); !why.empty()) {
+    stop(now, Outcome::kAborted, std::move(why));
     return decision;
   }
   if (phase.request.exhausted(now, state)) {

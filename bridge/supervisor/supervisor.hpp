@@ -87,8 +87,8 @@ class Supervisor {
   bool brakes_for_hazard(const Input& in, std::optional<double> following_since = {});
   /// What a flight cannot begin without, into waiting_for_; returns whom that is about.
   MissingPeer find_missing(const Input& in);
-  /// Why no aircraft may be armed or taken over here at all; empty: one may.
-  [[nodiscard]] std::string forbidden(const Input& in) const;
+  /// Which of two aircraft is meant nobody knows, in words; empty: it is known.
+  [[nodiscard]] std::string ambiguity(const vehicle::VehicleState& state) const;
 
   config::Mission mission_;
   SupervisorSettings settings_;

@@ -19,7 +19,7 @@ struct Intent {
   std::uint64_t vehicle = 0;               ///< vehicle_id()
   std::optional<frames::Geodetic> origin;  ///< of the frame of `path`; none: the sender does not know it
   double radius = 0.0;                     ///< of the vehicle's sphere
-  double margin = 0.0;                     ///< how far the vehicle may be off the path
+  double margin = 0.0;                     ///< how far the vehicle may be off the path, by its position's error too
   planner::base::TimedPath path;  ///< s from the message's stamp on, ENU from `origin`; only times and positions count
 };
 

@@ -16,6 +16,7 @@ constexpr double kSilentDoubt = 0.4;   // m/s, and while nothing more is heard
 constexpr double kAlive = 0.5;         // s, since its last message, within which a vehicle is surely there
 constexpr double kUnknownDelay = 0.1;  // s, that a message may have taken where only changes of its delay are known
 constexpr double kLeastMargin = 0.1;   // m
+constexpr double kSigmas = 2.0;        // standard deviations of a vehicle's position that count as its margin
 constexpr double kUnledMargin = 0.5;   // m, of a vehicle that follows nothing of ours
 constexpr double kMostMargin = 2.0;    // m
 constexpr double kForget = 3.0;        // s, in which a deviation fades
@@ -179,7 +180,9 @@ void Team::tell(double now, const vehicle::VehicleState& own, const setpoints::S
   intent.vehicle = own_vehicle_;
   intent.origin = own.origin;
   intent.radius = radius_;
-  intent.margin = std::clamp(deviation_, followed == nullptr ? kUnledMargin : kLeastMargin, kMostMargin);
+  // Its path is one of its estimate, which is off in the frame that is shared.
+  const double off = std::hypot(deviation_, kSigmas * own.position_sigma);
+  intent.margin = std::clamp(off, followed == nullptr ? kUnledMargin : kLeastMargin, kMostMargin);
   intent.path = shortened(committed(now, own, followed), now + kTold);
   for (TimedPoint& point : intent.path) point.t -= now;
   // What is not finite is not for others.

@@ -217,7 +217,7 @@ CASES = [
     Case("wrong_sysid", during=other_system(8, 77)),
     Case("two_autopilots", during=other_system(12, 9)),
     Case("two_autopilots_before_arming", during=other_system(12, 9, at_once=True), status=1, reason="system_id",
-         events=("second_autopilot",), end="ground"),
+         end="ground"),
     Case("refuses_to_arm", [at(0, "refuse_arming")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("refuses_offboard", [at(0, "refuse_offboard")], 1, "pre-arm check", ("waiting",), end="ground"),
     Case("no_position_on_dds", status=1, reason="local position", events=("waiting",), end="ground", mission={"state": "dds"}),

@@ -69,6 +69,8 @@ WirePosition wire_position() {
   w.ref_lat(47.397743);
   w.ref_lon(8.545594);
   w.ref_alt(489.5F);
+  w.eph(0.5F);
+  w.epv(0.3F);
   w.dead_reckoning(true);
   w.hagl_max_xy(std::numeric_limits<float>::infinity());
   return w;
@@ -95,7 +97,7 @@ Payload old_payload(bool version_0) {
   } else {
     out << 0.0F << false << count;
   }
-  out << 0.1F << 0.1F << 0.1F << 0.1F << w.dead_reckoning() << 0.0F << 0.0F << 0.0F << 0.0F;
+  out << w.eph() << w.epv() << 0.1F << 0.1F << w.dead_reckoning() << 0.0F << 0.0F << 0.0F << 0.0F;
   payload.resize(out.getSerializedDataLength());
   return payload;
 }
@@ -118,6 +120,8 @@ void expect_is_the_position(const std::optional<LocalPosition>& m) {
   EXPECT_NEAR(m->heading, std::numbers::pi / 2, 1e-6);
   EXPECT_TRUE(m->global);
   EXPECT_EQ(m->origin, (frames::Geodetic{47.397743, 8.545594, 489.5}));
+  EXPECT_NEAR(m->horizontal_accuracy, 0.5, 1e-6);
+  EXPECT_NEAR(m->vertical_accuracy, 0.3, 1e-6);
   EXPECT_TRUE(m->dead_reckoning);
 }
 
@@ -182,6 +186,7 @@ TEST(Px4LocalPositionFilter, GivesTheStateInEnu) {
   EXPECT_TRUE(s.local_position_ok);
   EXPECT_EQ(s.health, "dead reckoning");
   EXPECT_EQ(s.estimate_resets, 0U);  // before the first position
+  EXPECT_NEAR(s.position_sigma, 0.5 / std::numbers::sqrt2, 1e-6);
   ASSERT_TRUE(s.origin);
   EXPECT_EQ(s.origin->latitude_deg, 47.397743);
 }

@@ -280,6 +280,18 @@ TEST(Team, TellsThePathThatWaitsForItsStartWithoutPointsTooClose) {
   }
 }
 
+// Its path is one of its estimate, and others' places are known as well as its own.
+TEST(Team, TellsHowFarItsPositionIsOff) {
+  Hearing h;
+  vehicle::VehicleState state = own();
+  state.position_sigma = 0.6;
+  const setpoints::SetpointStream stream =
+      stream_on({{10.0, {1, 2, 3}, Vec3::Zero(), Vec3::Zero()}, {13.0, {7, 2, 3}, Vec3::Zero(), Vec3::Zero()}});
+  h.team.listen(10.0, state);
+  h.team.tell(10.0, state, &stream, 1);
+  EXPECT_NEAR(h.transport.sent.back().margin, 1.2, 1e-9);
+}
+
 TEST(Team, TellsAStopAStayAndWhereItDriftsWhenItFollowsNothing) {
   Hearing h;
   setpoints::SetpointStream stream =
@@ -324,9 +336,11 @@ struct TeamCompanion {
   testing::FakePlanner planner;
   testing::Recorder recorder;
   FakeIntents intents;
+  double sigma = 0.0;
   std::optional<companion::Companion> companion;
 
-  explicit TeamCompanion(bool on) {
+  explicit TeamCompanion(bool on, config::SensedFrom sensed_from = config::SensedFrom::kWorld) {
+    mission.tracks.sensed_from = sensed_from;
     mission.waypoints = {{20, 0, 5}};
     mission.tracks.required = false;
     mission.intents = on;
@@ -337,6 +351,7 @@ struct TeamCompanion {
     for (double t = from; t < to; t += 0.02) {
       vehicle::VehicleState& state = link.telemetry;
       state = own(t);
+      state.position_sigma = sigma;
       state.motion.value.position = {0, 0, 5};
       state.heartbeat_stamp = t;
       state.armed = state.armable = state.local_position_ok = true;
@@ -346,6 +361,18 @@ struct TeamCompanion {
     }
   }
 };
+
+// With onboard perception too: what the others tell is placed by satellites.
+TEST(CompanionOfATeam, KeepsWhatItsOwnPositionIsOffByFromTheOthers) {
+  TeamCompanion c(true, config::SensedFrom::kVehicle);
+  c.sigma = 0.7;
+  c.intents.inbox.push_back(message(10.0, 0.0, intent()));
+  c.run(10.0, 11.0);
+  ASSERT_FALSE(c.planner.jobs.empty());
+  ASSERT_EQ(c.planner.jobs.front().paths.size(), 1U);
+  EXPECT_GE(c.planner.jobs.front().paths[0].position_sigma, 0.7);
+  EXPECT_EQ(c.planner.jobs.front().request.margin, planner::base::HorizonSettings{}.margin);
+}
 
 TEST(CompanionOfATeam, PlansAroundTheOthersAndTellsItsPath) {
   TeamCompanion c(true);
