@@ -81,12 +81,14 @@ class DdsVehicleLink::Impl {
     const double heading = frames::heading_from_yaw_enu(setpoint.yaw);
     if (!sane(setpoint.position) || !sane(setpoint.velocity) || !sane(setpoint.acceleration)) return false;
     if (!std::isfinite(heading) || setpoint_readers() == 0) return false;
-    const auto stamp_us = static_cast<std::uint64_t>(system_time() * 1e6);
+    // PX4 takes a stamp of 0 as the time of reception. The system's clock may be set in flight, and OFFBOARD ends where
+    // setpoints seem older than COM_OF_LOSS_T.
+    constexpr std::uint64_t kNow = 0;
     px4_msgs::msg::dds_::OffboardControlMode_ mode;  // all false
-    mode.timestamp(stamp_us);
+    mode.timestamp(kNow);
     mode.position(true);
     px4_msgs::msg::dds_::TrajectorySetpoint_ wire;
-    wire.timestamp(stamp_us);
+    wire.timestamp(kNow);
     wire.position(to_wire(setpoint.position));
     wire.velocity(to_wire(setpoint.velocity));
     wire.acceleration(to_wire(setpoint.acceleration));

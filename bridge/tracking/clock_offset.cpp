@@ -9,11 +9,24 @@ namespace {
 
 // s of stamp for each second of reception, below which a writer's stamps stand still
 constexpr double kStampRate = 0.1;
+constexpr int kCertain = 3;  // messages
 
 }  // namespace
 
 std::optional<double> ClockOffsetEstimator::delay(double received, double stamp_age) {
-  const double stamp = received - stamp_age;  // to within a constant
+  stamp_age -= set_;
+  double stamp = received - stamp_age;  // to within a constant
+  const double back = first_ ? 0.0 : stamp_ - stamp;
+  if (back > kReordered && back <= kLongestDelay) {
+    turned_ = turned_ > 0 && stamp > turned_stamp_ ? turned_ + 1 : 1;
+    turned_stamp_ = stamp;
+    if (turned_ < kCertain) return std::nullopt;
+    const double age = received_ - stamp_;  // as before
+    set_ += stamp_age - age;
+    stamp_age = age;
+    stamp = received - age;
+  }
+  turned_ = 0;
   const bool first = std::exchange(first_, false);
   const bool advanced = !first && stamp - stamp_ > kStampRate * (received - received_);
   advances_ = advances_ || advanced;

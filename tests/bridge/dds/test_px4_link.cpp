@@ -438,8 +438,8 @@ TEST_F(Px4Dds, SendsSetpointsAsPx4TakesThem) {
   EXPECT_EQ(wire.acceleration(), (std::array{0.2F, 0.1F, -0.3F}));
   EXPECT_TRUE(std::isnan(wire.jerk()[0]) && std::isnan(wire.yawspeed()));
   EXPECT_FLOAT_EQ(wire.yaw(), static_cast<float>(std::numbers::pi / 2));
-  EXPECT_EQ(wire.timestamp(), mode.timestamp());
-  EXPECT_NEAR(static_cast<double>(wire.timestamp()) * 1e-6, system_time(), 60.0);
+  EXPECT_EQ(wire.timestamp(), 0U);  // as of when it comes
+  EXPECT_EQ(mode.timestamp(), 0U);
   EXPECT_EQ(dds.counts().setpoints_sent, 1U);
   EXPECT_TRUE(under_.sent.empty());
 }

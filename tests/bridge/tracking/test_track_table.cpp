@@ -145,6 +145,36 @@ TEST(TrackTable, LearnsTheOffsetAnewWhenAClockIsSet) {
   }
 }
 
+// By less than a delay may be: what tells the two apart is that stamps go back.
+TEST(TrackTable, AStepOfAClockIsNoDelay) {
+  for (const double step : {0.3, 0.6, 0.9, -0.6}) {
+    SCOPED_TRACE(step);
+    TrackTable table(kCoast);
+    feed(table, 10.0, 12.0, 0.03, 0.0);
+    feed(table, 12.0, 12.15, 0.03, step);  // three messages
+    EXPECT_LE(error_of(table, 12.15), 0.03 + 1e-9);
+    feed(table, 12.15, 20.0, 0.03, step);
+    EXPECT_LE(error_of(table, 20.0), 0.03 + 1e-9);
+    feed(table, 20.0, 30.0, 0.03, 0.0);  // and back
+    EXPECT_LE(error_of(table, 30.0), 0.03 + 1e-9);
+  }
+}
+
+TEST(TrackTable, ADelayThatGrowsIsNoStepOfAClock) {
+  TrackTable table(kCoast);
+  feed(table, 10.0, 12.0, 0.03, 0.0);
+  feed(table, 12.6, 16.0, 0.63, 0.0);
+  EXPECT_LE(error_of(table, 16.0), 1e-9);
+}
+
+TEST(TrackTable, OneThatWasOvertakenIsLeftOut) {
+  TrackTable table(kCoast);
+  feed(table, 10.0, 12.0, 0.03, 0.0);
+  table.ingest(message(11.96, 0.53, {track(1, {11.43, 0, 0}, {1, 0, 0})}));
+  feed(table, 12.0, 14.0, 0.03, 0.0);
+  EXPECT_LE(error_of(table, 14.0), 1e-9);
+}
+
 TEST(TrackTable, OneWrongStampDoesNotSpoilTheRest) {
   TrackTable table(kCoast);
   feed(table, 10.0, 11.0, 0.03, 0.0);
