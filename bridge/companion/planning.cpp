@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bridge/companion/route.hpp"
 #include "planner/horizon/path_check.hpp"
 
 namespace jink::bridge::companion {
