@@ -146,11 +146,12 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   job.estimate_shift = intake.estimate_shift();
   look_around(now, intake, job);
 
-  const bool lost = motion.lost(now, state);
-  const double share = motion.share(now);
-  reporter_.reference_lost(now, lost, motion.error(state), share);
   // In take-off the reference says nothing of the vehicle's motion until a plan is followed.
-  const bool from_vehicle = lost || (goal.kind == Goal::Kind::kClimb && stream.plan(now).empty());
+  const bool climbs = goal.kind == Goal::Kind::kClimb;
+  const bool lost = motion.lost(now, state);
+  const bool from_vehicle = lost || (climbs && stream.plan(now).empty());
+  const double share = motion.share(now);
+  reporter_.reference_lost(now, lost && !climbs, motion.error(state), share);
   // The plan begins where the vehicle will be, which is beside its reference.
   if (!from_vehicle) job.offset = motion.offset().forecast();
   const planner::base::TimedPoint reference = stream.reference(job.start);

@@ -105,7 +105,7 @@ def test(jink, instance):
                               stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as second:
             _, checks, _ = doctor(arena, mission, "--seconds", "4")
             second.stdin.close()
-        check(checks["other autopilots"]["level"] == "warning", "a second autopilot is warned of")
+        check(checks["other autopilots"]["level"] == "fault", "a second autopilot is a fault where none is named")
 
         outside = arena.mission("sitl", geofence={"min": [10, -50, 0], "max": [50, 50, 20]})
         status, checks, _ = doctor(arena, outside, "--seconds", "4")

@@ -131,6 +131,7 @@ TEST(Companion, AClimbGoesOnAfterAHazard) {
   loop.run(0.2);
   loop.follows = true;
   EXPECT_EQ(loop.planner.jobs.back().goal, Goal::Kind::kClimb);
+  EXPECT_EQ(loop.recorder.count("reference_lost"), 0);  // what it climbs to is no reference yet
   loop.tracks = false;
   loop.run(3.0);
   const double height = loop.last().position.z();
