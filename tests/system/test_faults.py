@@ -38,6 +38,8 @@ SCENARIO = {
 # Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile.
 UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [7, -4, 1.5]},
                            {**SCENARIO["obstacles"][1], "position": [6, 2.4, 1.5]}, SCENARIO["obstacles"][2]]}
+# Nothing is where a vehicle gets that does not know where it is.
+ASIDE = {"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}
 
 
 class Flight:
@@ -223,10 +225,11 @@ CASES = [
     Case("no_position_on_dds", status=1, reason="local position", events=("waiting",), end="ground", mission={"state": "dds"}),
     Case("pilot_takes_over", [at(1.5, "pilot_mode", mode="position")], 1, "the mode was changed to position", end="hold",
          linger=2.0, after=stream_stays_stopped, scenario=UNSTEERED),
+    # It drifts by metres before it stands, wherever the estimate says that it is.
     Case("gps_loss", [at(1.5, "gps_loss")], 1, "lost its GPS", hazards=("lost its GPS",), end="ground", linger=12.0,
-         scenario=UNSTEERED),
+         scenario=ASIDE),
     Case("estimate_jump", [at(1.5, "estimate_jump", by=[0, -3, 0])], events=("estimate_reset",), after=no_lurch,
-         scenario={"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}),
+         scenario=ASIDE),
     Case("battery_low", [at(1.0, "low_battery", remaining=0.12)], events=("battery",)),
     Case("battery_critical", [at(1.5, "low_battery", remaining=0.06)], 1, "battery is critical", ("battery",), end="ground",
          scenario=UNSTEERED),
