@@ -129,13 +129,43 @@ TrackPolicy read_tracks(const Value& value) {
   return tracks;
 }
 
+Endings read_endings(const Value& value) {
+  static constexpr std::array<std::string_view, 3> kNames = {"hold", "land", "return"};
+  static constexpr std::array<std::string_view, 3> kDangers = {"motors_cut", "return_above_fence", "hover_until_empty"};
+  const Map map(value, {"tracks", "link", "position", "battery", "breach", "planner", "accept"});
+  Endings endings;
+  const auto read = [&](std::string_view key, EndsIn& ending) {
+    if (const auto name = map.find(key)) ending = static_cast<EndsIn>(name->choice(kNames));
+  };
+  read("tracks", endings.tracks);
+  read("link", endings.link);
+  read("position", endings.position);
+  read("battery", endings.battery);
+  read("breach", endings.breach);
+  read("planner", endings.planner);
+  if (const auto accept = map.find("accept")) {
+    std::array<bool, kDangers.size()> accepted{};
+    for (const Value& name : accept->list(1, kDangers.size())) accepted[name.choice(kDangers)] = true;
+    endings.motors_cut = accepted[0];
+    endings.return_above_fence = accepted[1];
+    endings.hover_until_empty = accepted[2];
+  }
+  if (endings.position == EndsIn::kReturn) map.at("position", "").fail("needs a position; expected hold or land");
+  if (endings.battery == EndsIn::kHold && !endings.hover_until_empty) {
+    map.at("battery", "")
+        .fail("falls when the battery is empty; expected land or return, or accept: [hover_until_empty]");
+  }
+  return endings;
+}
+
 }  // namespace
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(read_document(file),
-                {"format", "name", "connection", "system_id", "vehicle", "takeoff_height", "min_height", "heights",
-                 "waypoints", "arrival", "geofence", "dds", "tracks", "state", "setpoints", "intents", "time_limit"},
-                "jink-mission/1");
+  const Map map(
+      read_document(file),
+      {"format", "name", "connection", "system_id", "vehicle", "takeoff_height", "min_height", "heights", "waypoints",
+       "arrival", "geofence", "dds", "tracks", "endings", "state", "setpoints", "intents", "time_limit"},
+      "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
@@ -161,6 +191,7 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   if (const auto setpoints = map.find("setpoints")) mission.setpoints = read_transport(*setpoints);
   if (const auto intents = map.find("intents")) mission.intents = intents->boolean();
   if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
+  if (const auto endings = map.find("endings")) mission.endings = read_endings(*endings);
   mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
   return mission;
 }

@@ -27,6 +27,25 @@ struct TrackSources {
   bool adsb = true;      ///< ADSB_VEHICLE on the MAVLink connection
 };
 
+/// What a vehicle is left in when a flight is ended: each is a mode of the autopilot, in which it avoids nothing.
+enum class EndsIn { kHold, kLand, kReturn };
+
+/// By the cause for which a flight is ended; after a stop that is checked against all that is known.
+struct Endings {
+  EndsIn tracks =
+      EndsIn::kHold;            ///< they are stale, a writer fell silent: where it stopped is what was seen to be free
+  EndsIn link = EndsIn::kHold;  ///< position, heartbeat, setpoints: the autopilot's own failsafe acts before that
+  EndsIn position = EndsIn::kHold;  ///< GPS or the local position is lost: never kReturn, which needs one
+  EndsIn battery = EndsIn::kLand;   ///< critical: it is the one that does not wait
+  EndsIn breach = EndsIn::kHold;    ///< out of the geofence, or of what the vehicle can follow
+  EndsIn planner = EndsIn::kHold;   ///< late, failed, or this program did not run
+
+  // Dangers that the mission's author takes.
+  bool motors_cut = false;          ///< the autopilot's own failsafe stops them in the air
+  bool return_above_fence = false;  ///< RETURN climbs out of the geofence
+  bool hover_until_empty = false;   ///< HOLD with a critical battery
+};
+
 struct TrackPolicy {
   bool required = true;    ///< no flight without a live track writer
   double timeout_s = 1.0;  ///< silence of the writers after which the tracks are stale
@@ -53,6 +72,7 @@ struct Mission {
   Transport setpoints = Transport::kMavlink;
   bool intents = true;  ///< tells the team's other vehicles the committed path, and avoids theirs
   TrackPolicy tracks;
+  Endings endings;
   double time_limit = 300.0;
   double ground = 0.0;  ///< its height; no key of the file, see in_local_frame
 };
@@ -61,8 +81,8 @@ struct Mission {
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
 /// system_id, takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min
-/// and max when given), dds.domain, dds.namespace, tracks and each of its keys, state and setpoints (mavlink or dds),
-/// intents, time_limit.
+/// and max when given), dds.domain, dds.namespace, tracks and each of its keys, endings and each of its keys, state and
+/// setpoints (mavlink or dds), intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
 /// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. With heights above the ground a waypoint

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bridge/base/text.hpp"
+#include "bridge/supervisor/dangers.hpp"
 
 namespace jink::bridge::companion {
 namespace {
@@ -63,7 +64,7 @@ bool Companion::step(double now) {
   const bool waited = supervisor_.phase() == supervisor::Phase::kWaiting;
   if (waited) place_mission();
   const supervisor::Decision decision = supervisor_.update(now, state, context(now));
-  if (waited && supervisor_.phase() == supervisor::Phase::kEngaging) tell_heights(now);
+  if (waited && supervisor_.phase() == supervisor::Phase::kEngaging) tell_beginning(now);
   reporter_.hazard_lasts(now, supervisor_.hazard());
   move(now, dt, decision);
   if (team::Team* team = intake_.team()) {
@@ -87,7 +88,7 @@ void Companion::notice_stall(double now) {
   if (stall <= kStall || (phase != supervisor::Phase::kClimbing && phase != supervisor::Phase::kFlying)) return;
   const std::string text = "this program did not run for " + base::seconds(stall);
   reporter_.stall(now, stall, text);
-  if (stall > kLongStall) supervisor_.stop(now, supervisor::Outcome::kAborted, text);
+  if (stall > kLongStall) supervisor_.stop(now, supervisor::Outcome::kAborted, text, mission_.endings.planner);
 }
 
 // An estimate that jumps takes along what is to be followed: the vehicle did not move.
@@ -121,17 +122,21 @@ void Companion::place_mission() {
       misplaced_ = raised_.back() + ", above the geofence's top";
     }
   }
+  if (const std::string danger = supervisor::danger(mission_, intake_.state().failsafe_parameters); !danger.empty())
+    misplaced_ = danger;
   route_.place(mission_.waypoints);
   motion_.place();
 }
 
-void Companion::tell_heights(double now) {
+void Companion::tell_beginning(double now) {
   if (!intake_.ground()) {
     reporter_.event(now, "ground", "not known: the autopilot tells no home; heights count from its local origin");
   } else if (std::abs(mission_.ground) > kFlat) {
     reporter_.event(now, "ground", "at " + base::metres(mission_.ground) + " in the autopilot's local frame");
   }
   for (const std::string& text : raised_) reporter_.event(now, "raised", text);
+  if (!intake_.state().failsafe_parameters.offboard_loss)
+    reporter_.event(now, "parameters", "not told: what the autopilot does without setpoints is not known");
 }
 
 void Companion::take_tracks(double now) {
@@ -151,7 +156,7 @@ void Companion::take_plan(double now) {
 // The vehicle is not left with the last setpoint because planning broke down: it brakes and gets HOLD.
 void Companion::stop_without_planner(double now) {
   if (const auto failure = planning_.take_failure())
-    supervisor_.stop(now, supervisor::Outcome::kAborted, "the planner failed: " + *failure);
+    supervisor_.stop(now, supervisor::Outcome::kAborted, "the planner failed: " + *failure, mission_.endings.planner);
 }
 
 supervisor::FlightContext Companion::context(double now) {

@@ -61,7 +61,7 @@ class Companion {
   [[nodiscard]] Goal goal(double now, Goal::Kind kind);
   [[nodiscard]] bool overhead_free(double now);
   void place_mission();
-  void tell_heights(double now);
+  void tell_beginning(double now);
 
   config::Mission given_;            // as it was written
   config::Mission mission_;          // in the local frame, see place_mission

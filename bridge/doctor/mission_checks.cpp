@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bridge/doctor/vehicle_checks.hpp"
+#include "bridge/supervisor/dangers.hpp"
 
 namespace jink::bridge::doctor {
 
@@ -160,6 +161,8 @@ std::vector<Check> inspect_mission(const config::Mission& mission, const LinkFin
   const double ground = state.in_air ? state.home_height.value_or(0.0) : state.motion.value.position.z();
   const config::Mission placed = config::in_local_frame(mission, ground, state.origin ? state.origin->altitude_m : 0.0);
   checks.push_back(inspect_fence(placed, state));
+  if (const std::string why = supervisor::danger(placed, state.failsafe_parameters); !why.empty())
+    checks.push_back({Level::kFault, "endings", why, "`jink fly` refuses this mission as it is"});
   inspect_waypoints(placed, state, checks);
   return checks;
 }

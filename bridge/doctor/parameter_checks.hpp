@@ -10,14 +10,16 @@
 
 #include "bridge/doctor/check.hpp"
 #include "bridge/vehicle/px4.hpp"
+#include "config/mission.hpp"
 
 namespace jink::bridge::doctor {
 
 /// The names that inspect_parameters() wants to know.
 [[nodiscard]] std::span<const std::string> doctor_parameters();
 
-/// One check for each parameter that matters; `rc_receiver`: a manual control is there now.
+/// One check for each parameter that matters, beside what the mission wants in the same case; `rc_receiver`: a manual
+/// control is there now.
 [[nodiscard]] std::vector<Check> inspect_parameters(const std::map<std::string, vehicle::px4::Parameter>& parameters,
-                                                    bool rc_receiver);
+                                                    const config::Endings& endings, bool rc_receiver);
 
 }  // namespace jink::bridge::doctor

@@ -206,7 +206,7 @@ std::vector<Check> inspect_link(const config::Mission& mission, const LinkFindin
   inspect_identity(mission, heard, checks);
   inspect_traffic(mission, heard, checks);
   inspect_vehicle(heard, checks);
-  for (Check& check : inspect_parameters(heard.parameters, heard.state.remote_control))
+  for (Check& check : inspect_parameters(heard.parameters, mission.endings, heard.state.remote_control))
     checks.push_back(std::move(check));
   return checks;
 }

@@ -2,6 +2,8 @@
 #include "bridge/mavlink/autopilot_telemetry.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 namespace jink::bridge::mavlink {
@@ -9,6 +11,16 @@ namespace jink::bridge::mavlink {
 namespace {
 
 constexpr std::uint32_t kRcReceiver = 0x10000;  // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+
+struct FailsafeParameter {
+  const char* name;
+  std::optional<double> vehicle::FailsafeParameters::*member;
+};
+constexpr std::array<FailsafeParameter, 3> kFailsafeParameters{{
+    {"COM_OBL_RC_ACT", &vehicle::FailsafeParameters::offboard_loss},
+    {"GF_ACTION", &vehicle::FailsafeParameters::fence_breach},
+    {"RTL_RETURN_ALT", &vehicle::FailsafeParameters::return_height},
+}};
 
 }  // namespace
 
@@ -162,6 +174,20 @@ void AutopilotTelemetry::on(const StatusText& message) {
   for (std::string& line : texts_.add(message.severity, message.id, message.chunk, message.text)) {
     notice("autopilot_text", std::move(line));
   }
+}
+
+void AutopilotTelemetry::on(const vehicle::px4::Parameter& parameter) {
+  for (const auto& [name, member] : kFailsafeParameters) {
+    if (parameter.name == name && std::isfinite(parameter.value)) state_.failsafe_parameters.*member = parameter.value;
+  }
+}
+
+std::vector<std::string> AutopilotTelemetry::untold_parameters() const {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : kFailsafeParameters) {
+    if (!(state_.failsafe_parameters.*member)) names.emplace_back(name);
+  }
+  return names;
 }
 
 vehicle::VehicleState AutopilotTelemetry::state(double now) const {

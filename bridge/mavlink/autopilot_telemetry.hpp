@@ -78,6 +78,7 @@ class AutopilotTelemetry {
   void on(const Home& message);
   void on(const AutopilotVersion& message);
   void on(const StatusText& message);
+  void on(const vehicle::px4::Parameter& parameter);
   /// A message that could not be decoded.
   void malformed() { ++counts_.malformed; }
 
@@ -91,6 +92,8 @@ class AutopilotTelemetry {
   [[nodiscard]] double heartbeat_stamp() const { return state_.heartbeat_stamp; }
   [[nodiscard]] bool origin_known() const { return state_.origin.has_value(); }
   [[nodiscard]] bool home_known() const { return state_.home_height.has_value(); }
+  /// Of VehicleState::failsafe_parameters.
+  [[nodiscard]] std::vector<std::string> untold_parameters() const;
 
   /// At most kNotices wait; the oldest go.
   void notice(std::string name, std::string detail);

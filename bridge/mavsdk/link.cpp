@@ -272,6 +272,13 @@ std::optional<vehicle::CommandReport> MavsdkLink::Impl::next_report() {
   return commands_.next(now);
 }
 
+void MavsdkLink::Impl::request_parameter(const std::string& name) const {
+  (void)transmit("PARAM_REQUEST_READ", {{"target_system", system_id_},
+                                        {"target_component", kAutopilotComponent},
+                                        {"param_id", name},
+                                        {"param_index", -1}});
+}
+
 std::vector<std::optional<vehicle::px4::Parameter>> MavsdkLink::Impl::read_parameters(
     std::span<const std::string> names, double timeout_s, const std::stop_token& stop) {
   std::vector<std::optional<vehicle::px4::Parameter>> result(names.size());
@@ -285,12 +292,7 @@ std::vector<std::optional<vehicle::px4::Parameter>> MavsdkLink::Impl::read_param
     std::vector<std::string> asked;
     std::copy_if(names.begin(), names.end(), std::back_inserter(asked), missing);
     lock.unlock();  // answers come while requests go out
-    for (const std::string& name : asked) {
-      (void)transmit("PARAM_REQUEST_READ", {{"target_system", system_id_},
-                                            {"target_component", kAutopilotComponent},
-                                            {"param_id", name},
-                                            {"param_index", -1}});
-    }
+    for (const std::string& name : asked) request_parameter(name);
     lock.lock();
     (void)parameter_came_.wait_for(lock, stop, std::chrono::duration<double>(timeout_s / kParameterTries), complete);
   }

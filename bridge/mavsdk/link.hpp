@@ -40,11 +40,11 @@ struct StreamRate {
 /// where the autopilot sends ESTIMATOR_STATUS, an estimator that holds it. `estimate_resets`: see EstimateResets.
 /// `battery`: the worst of the batteries' BATTERY_STATUS.charge_state; where that says nothing, SYS_STATUS's remaining
 /// charge by PX4's default thresholds. `origin` is GPS_GLOBAL_ORIGIN's, `home_height` HOME_POSITION's, asked for with
-/// each heartbeat until they are told. `reboots`: the autopilot's time went back by more than kReboot_s; then origin,
-/// health and battery are unknown anew. LOCAL_POSITION_NED and ATTITUDE are asked for at kTelemetryHz, ODOMETRY at
-/// kOdometryHz, CURRENT_MODE at kModeHz, and again after each heartbeat interval in which they came slower. A position
-/// that is older than one that came before is left out. PING is sent every LinkDelay::kPeriod: `motion` is stamped as
-/// long before it came as its answers tell, which is `link_delay` too.
+/// each heartbeat until they are told; so, five times, are `failsafe_parameters`. `reboots`: the autopilot's time went
+/// back by more than kReboot_s; then origin, health and battery are unknown anew. LOCAL_POSITION_NED and ATTITUDE are
+/// asked for at kTelemetryHz, ODOMETRY at kOdometryHz, CURRENT_MODE at kModeHz, and again after each heartbeat interval
+/// in which they came slower. A position that is older than one that came before is left out. PING is sent every
+/// LinkDelay::kPeriod: `motion` is stamped as long before it came as its answers tell, which is `link_delay` too.
 ///
 /// A silence of any length ends by itself: nothing has to be opened again. Over UDP, though, MAVSDK sends nothing to a
 /// peer that was silent for 10 s, until it speaks.

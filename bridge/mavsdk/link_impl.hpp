@@ -105,6 +105,7 @@ class MavsdkLink::Impl {
   void watch_other_systems(const std::stop_token& stop);
   bool transmit(const char* name, const nlohmann::json& fields) const;
   bool transmit(const vehicle::px4::CommandLong& command) const;
+  void request_parameter(const std::string& name) const;
   void ping(double now);
   void request_streams(const std::array<bool, kStreams>& slow) const;
 
@@ -142,6 +143,7 @@ class MavsdkLink::Impl {
   std::array<std::uint64_t, kStreams> heard_{};
   std::array<std::uint64_t, kStreams> at_heartbeat_{};  // heard_ at the heartbeat before
   std::array<int, kStreams> requests_{};                // of what was never heard
+  int parameter_requests_ = 0;
   double rates_since_ = 0.0;
   std::set<std::uint32_t> other_autopilots_;
   std::deque<mavlink::AdsbReport> adsb_;

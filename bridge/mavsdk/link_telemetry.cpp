@@ -87,6 +87,7 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
   bool want_origin = false;
   bool want_home = false;
   bool want_version = false;
+  std::vector<std::string> want_parameters;
   {
     const std::scoped_lock lock(mutex_);
     const double before = telemetry_.heartbeat_stamp();
@@ -103,12 +104,14 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     want_origin = !telemetry_.origin_known();
     want_home = !telemetry_.home_known();
     want_version = !telemetry_.info().version;
+    if (ready_ && ++parameter_requests_ <= kRequests) want_parameters = telemetry_.untold_parameters();
   }
   if (!ready_) return;
   request_streams(slow);
   if (want_origin) (void)transmit(vehicle::px4::request_message(kMessageOrigin));
   if (want_home) (void)transmit(vehicle::px4::request_message(kMessageHome));
   if (want_version) (void)transmit(vehicle::px4::request_message(kMessageVersion));
+  for (const std::string& name : want_parameters) request_parameter(name);
   ping(now);
 }
 
@@ -174,10 +177,12 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::P
 void MavsdkLink::Impl::on(double /*now*/, const Sender& /*sender*/, const mavlink::ParamValue& message) {
   {
     const std::scoped_lock lock(mutex_);
-    if (parameters_.size() >= kParameters && !parameters_.contains(message.name)) return;
     const bool bytewise =
         telemetry_.info().autopilot.value_or(vehicle::px4::kAutopilotPx4) == vehicle::px4::kAutopilotPx4;
-    parameters_[message.name] = vehicle::px4::parameter(message.name, message.type, message.field, bytewise);
+    vehicle::px4::Parameter parameter = vehicle::px4::parameter(message.name, message.type, message.field, bytewise);
+    telemetry_.on(parameter);
+    if (parameters_.size() >= kParameters && !parameters_.contains(message.name)) return;
+    parameters_[message.name] = std::move(parameter);
   }
   parameter_came_.notify_all();
 }

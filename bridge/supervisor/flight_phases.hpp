@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "bridge/supervisor/command_request.hpp"
+#include "config/mission.hpp"
 
 namespace jink::bridge::supervisor {
 
@@ -42,7 +43,7 @@ struct Waiting {
   static constexpr Phase kPhase = Phase::kWaiting;
   MissingPeer absent = MissingPeer::kNone;  ///< who is waited for; kNone: the autopilot's health
   std::optional<double> since;              ///< for that; none: before the first step
-  std::optional<double> ready_since{};      ///< but for the ground's height
+  std::optional<double> ready_since{};      ///< but for what the autopilot may never tell
   std::optional<double> heard_since{};      ///< the autopilot
 };
 struct Engaging {
@@ -65,7 +66,7 @@ struct Stopping {
   static constexpr Phase kPhase = Phase::kStopping;
   double since = 0.0;
   Ending ending;
-  bool land = false;  ///< then, and no HOLD
+  config::EndsIn then = config::EndsIn::kHold;
 };
 struct Handover {
   static constexpr Phase kPhase = Phase::kHandover;
@@ -73,6 +74,7 @@ struct Handover {
   Ending ending;
   bool landing_interrupted = false;  ///< the autopilot may be in LAND still
   bool rescue = false;               ///< out of a failsafe that sinks: HOLD without setpoints
+  bool returns = false;              ///< RETURN is asked for, and HOLD where that is refused
   CommandRequest request = {};
 };
 struct Landing {

@@ -15,38 +15,39 @@ constexpr double kForgetting = 1.0 / 3.0;  // s of hazard forgotten in each seco
 
 using S = Situation;
 constexpr auto kBrake = Hazard::Reaction::kBrake;
-constexpr auto kHold = Hazard::EndsIn::kHold;
+using E = config::Endings;
 
 constexpr Hazard kHazards[] = {
     {"the battery is critical", [](const S& s) { return s.state.battery == vehicle::BatteryState::kCritical; },
-     Hazard::Reaction::kStop, Hazard::EndsIn::kLand},
+     Hazard::Reaction::kStop, &E::battery},
     {"the vehicle's position is stale",
-     [](const S& s) { return s.state.motion.silence(s.now) > s.settings.stale_state; }, kBrake, kHold},
+     [](const S& s) { return s.state.motion.silence(s.now) > s.settings.stale_state; }, kBrake, &E::link},
     {"the vehicle's position comes too late", [](const S& s) { return s.state.motion.delay() > kLatest; }, kBrake,
-     kHold},
+     &E::link},
     {"the autopilot's heartbeat is missing",
-     [](const S& s) { return s.now - s.state.heartbeat_stamp > kHeartbeatLost; }, kBrake, kHold},
-    {"the autopilot's failsafe flies", [](const S& s) { return s.failsafe; }, kBrake, kHold, /*names_mode=*/true},
-    {"the autopilot has lost its position", [](const S& s) { return !s.state.local_position_ok; }, kBrake, kHold},
-    {"the autopilot has lost its GPS", [](const S& s) { return s.state.gps_lost; }, kBrake, kHold},
-    {"the vehicle has left the geofence", [](const S& s) { return s.flight.outside > kBreach; }, kBrake, kHold},
-    {"the vehicle is above the geofence", [](const S& s) { return s.flight.above > kBreach; }, kBrake, kHold},
-    {"the vehicle cannot follow its setpoints", [](const S& s) { return s.flight.cannot_follow; }, kBrake, kHold},
+     [](const S& s) { return s.now - s.state.heartbeat_stamp > kHeartbeatLost; }, kBrake, &E::link},
+    {"the autopilot's failsafe flies", [](const S& s) { return s.failsafe; }, kBrake, &E::link, /*names_mode=*/true},
+    {"the autopilot has lost its position", [](const S& s) { return !s.state.local_position_ok; }, kBrake,
+     &E::position},
+    {"the autopilot has lost its GPS", [](const S& s) { return s.state.gps_lost; }, kBrake, &E::position},
+    {"the vehicle has left the geofence", [](const S& s) { return s.flight.outside > kBreach; }, kBrake, &E::breach},
+    {"the vehicle is above the geofence", [](const S& s) { return s.flight.above > kBreach; }, kBrake, &E::breach},
+    {"the vehicle cannot follow its setpoints", [](const S& s) { return s.flight.cannot_follow; }, kBrake, &E::breach},
     {"the obstacle tracks are stale",
      [](const S& s) {
        return s.tracks.required && (!s.flight.newest_tracks || s.now - *s.flight.newest_tracks > s.tracks.timeout_s);
      },
-     kBrake, kHold},
+     kBrake, &E::tracks},
     {"a writer of obstacle tracks has fallen silent",
-     [](const S& s) { return s.tracks.required && s.flight.lost_writers > 0; }, kBrake, kHold},
-    {"setpoints cannot be sent", [](const S& s) { return s.flight.unsent_for > kUnsent; }, kBrake, kHold},
+     [](const S& s) { return s.tracks.required && s.flight.lost_writers > 0; }, kBrake, &E::tracks},
+    {"setpoints cannot be sent", [](const S& s) { return s.flight.unsent_for > kUnsent; }, kBrake, &E::link},
     {"the planner is late",
      [](const S& s) {
        if (!s.following_since) return false;
        const double newest = s.flight.newest_plan.value_or(*s.following_since);
        return s.now - std::max(newest, *s.following_since) > s.settings.stale_plan;
      },
-     kBrake, kHold},
+     kBrake, &E::planner},
 };
 
 }  // namespace

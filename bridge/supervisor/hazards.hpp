@@ -57,11 +57,10 @@ struct Hazard {
     kBrake,  ///< while it lasts; where it does not pass, or comes again and again, the flight is ended
     kStop    ///< the flight is ended at once
   };
-  enum class EndsIn { kHold, kLand };
   std::string_view what;
   bool (*present)(const Situation& s);
   Reaction reaction;
-  EndsIn ends_in;
+  config::EndsIn config::Endings::*ends_in;
   bool names_mode = false;  ///< in its text
 };
 /// In the order in which they count: the first that is present is told.

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSettling = 0.3;       // s, within which a request acts; PX4 takes up to 15 ms
 constexpr double kReadyAgain = 10.0;    // s, to become ready again between the first request and arming
 constexpr double kClimbTimeout = 30.0;  // s
-constexpr double kHomeTimeout = 3.0;    // s; PX4 tells its home every 2 s
+constexpr double kToldWithin = 3.0;     // s; PX4 tells its home every 2 s
 constexpr double kOthersTime = 1.5;     // s, in which each autopilot says something; PX4 sends a heartbeat a second
 
 using Motion = Decision::Motion;
@@ -36,7 +36,7 @@ bool Supervisor::arrived() const {
   return ending != nullptr && ending->outcome == Outcome::kReached;
 }
 
-void Supervisor::stop(double now, Outcome outcome, std::string reason) {
+void Supervisor::stop(double now, Outcome outcome, std::string reason, config::EndsIn then) {
   const Phase before = phase();
   if (before == Phase::kDone || before == Phase::kStopping || before == Phase::kHandover) return;
   auto* landing = std::get_if<Landing>(&phase_);
@@ -56,7 +56,7 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason) {
   } else {
     const CommandRequest* request = request_of(phase_);
     if (request != nullptr && request->asked()) ending.unsettled_until = request->asked_at() + kSettling;
-    phase_ = Stopping{now, std::move(ending)};
+    phase_ = Stopping{now, std::move(ending), then};
   }
 }
 
@@ -117,9 +117,13 @@ Decision Supervisor::step(Waiting& phase, const Input& in) {
   if (!phase.heard_since && absent != MissingPeer::kAutopilot) phase.heard_since = in.now;
   if (waiting_for_.empty() && mission_.system_id == 0 && !in.state.in_air && in.now - *phase.heard_since < kOthersTime)
     waiting_for_ = "other autopilots to speak up, as the mission names none (system_id)";
-  if (waiting_for_.empty() && !in.flight.ground_known) {
+  const bool parameters_known = in.state.failsafe_parameters.offboard_loss.has_value();
+  if (waiting_for_.empty() && !(in.flight.ground_known && parameters_known)) {
     if (!phase.ready_since) phase.ready_since = in.now;
-    if (in.now - *phase.ready_since < kHomeTimeout) waiting_for_ = "the autopilot's home, to know where the ground is";
+    if (in.now - *phase.ready_since < kToldWithin) {
+      waiting_for_ = in.flight.ground_known ? "the autopilot's parameters, to know what its failsafe does"
+                                            : "the autopilot's home, to know where the ground is";
+    }
   }
   if (waiting_for_.empty()) {
     if (!in.flight.misplaced.empty()) {
@@ -195,16 +199,16 @@ void Supervisor::stop_for_hazard(const Input& in) {
   if (hazard == nullptr) return;
   if (phase() == Phase::kClimbing || phase() == Phase::kFlying)
     stop(in.now, Outcome::kAborted, std::string(hazard->what));
-  if (auto* stopping = std::get_if<Stopping>(&phase_))
-    stopping->land = stopping->land || hazard->ends_in == Hazard::EndsIn::kLand;
+  if (auto* stopping = std::get_if<Stopping>(&phase_)) stopping->then = mission_.endings.*hazard->ends_in;
 }
 
 bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> following_since) {
   const Situation now = situation(in, following_since);
-  hazard_.see(find_hazard(Hazard::Reaction::kBrake, now), now);
-  if (hazard_.text().empty()) return false;
+  const Hazard* hazard = find_hazard(Hazard::Reaction::kBrake, now);
+  hazard_.see(hazard, now);
+  if (hazard == nullptr) return false;
   if (const std::string why = hazard_.given_up(in.now, settings_.give_up); !why.empty())
-    stop(in.now, Outcome::kAborted, why);
+    stop(in.now, Outcome::kAborted, why, mission_.endings.*hazard->ends_in);
   return true;
 }
 

@@ -34,8 +34,8 @@ class Supervisor {
 
   /// One step at time `now` (non-decreasing).
   Decision update(double now, const vehicle::VehicleState& state, const FlightContext& flight);
-  /// Ends the flight: brakes, hands over to HOLD. On the ground it just ends.
-  void stop(double now, Outcome outcome, std::string reason);
+  /// Ends the flight: brakes, hands over. On the ground it just ends.
+  void stop(double now, Outcome outcome, std::string reason, config::EndsIn then = config::EndsIn::kHold);
 
   [[nodiscard]] Phase phase() const { return phase_of(phase_); }
   [[nodiscard]] bool done() const { return std::holds_alternative<Done>(phase_); }

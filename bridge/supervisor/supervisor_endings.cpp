@@ -32,7 +32,8 @@ bool failsafe_flies(const vehicle::VehicleState& state) {
 bool pilots(const vehicle::VehicleState& state) {
   const vehicle::FlightMode intended = state.intended_mode;
   const bool ours = intended == vehicle::FlightMode::kUnknown || intended == vehicle::FlightMode::kOffboard ||
-                    intended == vehicle::FlightMode::kHold || intended == vehicle::FlightMode::kLand;
+                    intended == vehicle::FlightMode::kHold || intended == vehicle::FlightMode::kLand ||
+                    intended == vehicle::FlightMode::kReturn;
   return !flies_by_itself(state.mode) && (state.remote_control || !ours);
 }
 
@@ -83,10 +84,13 @@ bool Supervisor::left_to_failsafe(const Input& in) {
 Decision Supervisor::step(Stopping& phase, const Input& in) {
   const double stopping = in.now - phase.since;
   const bool stopped = !in.state.in_air || stopping > kLongestStop || (in.flight.at_rest && stopping > kShortestStop);
-  if (stopped && phase.land && in.state.armed) {
+  if (!stopped) return {Motion::kBrake, {}};
+  if (phase.then == config::EndsIn::kLand && in.state.armed) {
     phase_ = Landing{in.now, std::move(phase.ending), /*forced=*/true};
-  } else if (stopped) {
-    phase_ = Handover{in.now, std::move(phase.ending)};
+  } else {
+    Handover handover{in.now, std::move(phase.ending)};
+    handover.returns = phase.then == config::EndsIn::kReturn && in.state.in_air;
+    phase_ = std::move(handover);
   }
   return {Motion::kBrake, {}};
 }
@@ -137,10 +141,16 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
     phase.rescue = true;
     return rescue(phase, in);
   }
-  // HOLD is there; or somebody chose another mode, and that stands.
+  // What was asked for is there; or somebody chose another mode, and that stands.
   if ((!offboard && !landing) || grounded(state)) {
     finish(std::move(ending));
     return {};
+  }
+  if (phase.returns && phase.request.exhausted(now, state)) {
+    const std::string refusal = phase.request.refusal();
+    ending.reason += "; RETURN was not to be had" + (refusal.empty() ? "" : " (" + refusal + ")");
+    phase.returns = false;
+    phase.request = {};
   }
   if (phase.request.exhausted(now, state)) {
     if (ending.outcome == Outcome::kReached) ending.outcome = Outcome::kAborted;
@@ -149,7 +159,7 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
     return {};
   }
   // The stream goes on until HOLD is confirmed, so that the vehicle is never without an order.
-  return {motion, phase.request.ask(vehicle::Command::kHold, now, state)};
+  return {motion, phase.request.ask(phase.returns ? vehicle::Command::kReturn : vehicle::Command::kHold, now, state)};
 }
 
 Decision Supervisor::step(Landing& phase, const Input& in) {

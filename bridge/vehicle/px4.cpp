@@ -17,6 +17,7 @@ constexpr double kUnspecified = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCustomModeEnabled = 1.0;  // MAV_MODE_FLAG_CUSTOM_MODE_ENABLED: the mode stands in the next parameters
 constexpr double kMainAuto = 4.0;           // PX4_CUSTOM_MAIN_MODE_AUTO
 constexpr double kSubLoiter = 3.0;          // PX4_CUSTOM_SUB_MODE_AUTO_LOITER
+constexpr double kSubReturn = 5.0;          // PX4_CUSTOM_SUB_MODE_AUTO_RTL
 constexpr double kMainOffboard = 6.0;       // PX4_CUSTOM_MAIN_MODE_OFFBOARD
 
 FlightMode auto_mode(std::uint32_t sub) {
@@ -220,6 +221,8 @@ CommandLong command_long(Command command) {
       return {kDoSetMode, {kCustomModeEnabled, kMainOffboard}};
     case Command::kHold:
       return {kDoSetMode, {kCustomModeEnabled, kMainAuto, kSubLoiter}};
+    case Command::kReturn:
+      return {kDoSetMode, {kCustomModeEnabled, kMainAuto, kSubReturn}};
     case Command::kLand:  // here, with the present heading
       return {kNavLand, {0.0, 0.0, 0.0, kUnspecified, kUnspecified, kUnspecified, kUnspecified}};
   }

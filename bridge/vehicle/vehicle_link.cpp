@@ -57,6 +57,8 @@ std::string_view to_string(Command command) {
       return "hold";
     case Command::kLand:
       return "land";
+    case Command::kReturn:
+      return "return";
   }
   return "unknown";
 }

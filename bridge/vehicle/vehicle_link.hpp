@@ -34,6 +34,13 @@ enum class BatteryState { kUnknown, kOk, kLow, kCritical };
 /// "ok", "low", ...: for people and logs.
 std::string_view to_string(BatteryState state);
 
+/// The autopilot's parameters that decide how a flight may end without jink; none: not told.
+struct FailsafeParameters {
+  std::optional<double> offboard_loss;  ///< COM_OBL_RC_ACT: what it does without setpoints
+  std::optional<double> fence_breach;   ///< GF_ACTION: what it does out of its own fence
+  std::optional<double> return_height;  ///< RTL_RETURN_ALT, m above home: to which RETURN climbs
+};
+
 /// The newest of everything the autopilot has told. Stamps are in the companion's clock.
 struct VehicleState {
   double heartbeat_stamp = base::kNever;  ///< newest heartbeat, which carries armed and mode
@@ -65,6 +72,7 @@ struct VehicleState {
   /// s, that a setpoint is on its way to the autopilot, as far as the link can tell; `motion`'s stamp has the way back
   /// taken off.
   double link_delay = 0.0;
+  FailsafeParameters failsafe_parameters;
   std::uint32_t reboots = 0;  ///< times that the autopilot began anew; its local frame may be another since
 };
 
@@ -76,7 +84,7 @@ struct Setpoint {
   double yaw = 0.0;
 };
 
-enum class Command { kArm, kDisarm, kOffboard, kHold, kLand };
+enum class Command { kArm, kDisarm, kOffboard, kHold, kLand, kReturn };
 std::string_view to_string(Command command);
 
 /// The autopilot's answer to a command. `accepted` is its acknowledgement and no proof: PX4 accepts DO_SET_MODE twice,

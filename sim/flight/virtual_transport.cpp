@@ -148,6 +148,8 @@ vehicle::Result VirtualLink::act(bridge::vehicle::Command command) {
       return autopilot_.hold();
     case bridge::vehicle::Command::kLand:
       return autopilot_.land();
+    case bridge::vehicle::Command::kReturn:
+      return autopilot_.set_mode(4, 5);
   }
   return vehicle::Result::kUnsupported;
 }
@@ -202,6 +204,9 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.estimate_resets = resets_;
   state.estimate_shift = shift_;
   state.battery = bridge_battery(autopilot_.battery_level());
+  const vehicle::Parameters& parameters = autopilot_.parameters();
+  state.failsafe_parameters.offboard_loss = parameters.integer("COM_OBL_RC_ACT");
+  state.failsafe_parameters.return_height = parameters.real("RTL_RETURN_ALT");
   state.origin = frame_.to_geodetic(autopilot_.estimator().origin());
   state.system_id = static_cast<std::uint32_t>(autopilot_.options().system_id);
   return state;

@@ -126,6 +126,29 @@ TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
   EXPECT_EQ(m.tracks.sensed_from, SensedFrom::kVehicle);
 }
 
+TEST(LoadMission, ReadsHowFlightsEndByCause) {
+  const Folder folder;
+  const Endings defaults = load_mission(folder.write("d.yaml", kValidMission)).endings;
+  for (const auto member : {&Endings::tracks, &Endings::link, &Endings::position, &Endings::breach, &Endings::planner})
+    EXPECT_EQ(defaults.*member, EndsIn::kHold);
+  EXPECT_EQ(defaults.battery, EndsIn::kLand);
+  EXPECT_FALSE(defaults.motors_cut || defaults.return_above_fence || defaults.hover_until_empty);
+  const Endings e =
+      load_mission(folder.write("m.yaml", kValidMission +
+                                              "endings: {tracks: land, link: return, "
+                                              "position: land, battery: hold, breach: return, planner: land, "
+                                              "accept: [hover_until_empty, motors_cut]}\n"))
+          .endings;
+  EXPECT_EQ(e.tracks, EndsIn::kLand);
+  EXPECT_EQ(e.link, EndsIn::kReturn);
+  EXPECT_EQ(e.position, EndsIn::kLand);
+  EXPECT_EQ(e.battery, EndsIn::kHold);
+  EXPECT_EQ(e.breach, EndsIn::kReturn);
+  EXPECT_EQ(e.planner, EndsIn::kLand);
+  EXPECT_TRUE(e.motors_cut && e.hover_until_empty);
+  EXPECT_FALSE(e.return_above_fence);
+}
+
 TEST(LoadMission, AcceptsTheUrlsOfMavsdk) {
   for (const std::string url :
        {"udp://:14540", "udpin://0.0.0.0:14540", "udpout://192.168.1.12:14550", "tcp://localhost:5760", "tcpin://:5760",
@@ -187,6 +210,11 @@ TEST(LoadMission, RefusesBadValues) {
       {"coast_s: 0.5", "sensed_from: mars", 11, "tracks.sensed_from", "mars", "is not one of world, vehicle"},
       {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 3]"},
       {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar", "is not one of jink, autoware, adsb"},
+      {"time_limit: 120", "endings: {tracks: loiter}", 12, "endings.tracks", "loiter", "not one of hold, land, return"},
+      {"time_limit: 120", "endings: {position: return}", 12, "endings.position", "return", "expected hold or land"},
+      {"time_limit: 120", "endings: {battery: hold}", 12, "endings.battery", "hold", "accept: [hover_until_empty]"},
+      {"time_limit: 120", "endings: {batery: land}", 12, "endings.batery", "", "did you mean 'battery'?"},
+      {"time_limit: 120", "endings: {accept: [all]}", 12, "endings.accept[0]", "all", "is not one of motors_cut"},
       {"time_limit: 120", "state: ros", 12, "state", "ros", "is not one of mavlink, dds"},
       {"required: false", "required: maybe", 11, "tracks.required", "maybe", "is not true or false"},
       {"timeout_s: 1.5", "timeout_s: 0", 11, "tracks.timeout_s", "0", "is not in (0, 60]"},

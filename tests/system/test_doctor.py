@@ -5,16 +5,11 @@
 """
 
 import json
-import os
-import struct
 import subprocess
 import sys
 
-os.environ["MAVLINK20"] = "1"  # read by the import
-
-from pymavlink import mavutil
-
 from flight import CONFIG, SOURCE, Arena, check, interrupt, main, wait_until
+from ground_station import set_parameter
 
 STREAMS = ("HEARTBEAT", "LOCAL_POSITION_NED", "ATTITUDE", "ODOMETRY")
 
@@ -39,24 +34,6 @@ def doctor(arena, mission, *options):
                      c["finding"] in line and c["name"] in line), None)
         check(line is not None and c["remedy"] in line, f"one line for {c['name']}")
     return done.returncode, {c["name"]: c for c in told["checks"]}, done.stdout
-
-
-def set_parameter(port, name, value):
-    """As a ground station does, over its own link."""
-    link = mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}", source_system=255, dialect="common")
-    field = struct.unpack("<f", struct.pack("<i", value))[0] if isinstance(value, int) else value
-    kind = mavutil.mavlink.MAV_PARAM_TYPE_INT32 if isinstance(value, int) else mavutil.mavlink.MAV_PARAM_TYPE_REAL32
-    told = []
-
-    def set_and_told():
-        link.mav.param_set_send(link_system, 1, name.encode(), field, kind)
-        message = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=0.5)
-        told.extend([message] if message is not None and message.param_id == name else [])
-        return told
-
-    link_system = port - 18570 + 1
-    wait_until(set_and_told, 20, f"{name} = {value}")
-    link.close()
 
 
 def test(jink, instance):
@@ -90,10 +67,9 @@ def test(jink, instance):
               "PX4's default for a lost stream is warned of")
         check(checks["COM_RCL_EXCEPT"]["level"] == "warning", "and that for a lost remote control")
 
-        ground = 18570 + arena.instance
-        set_parameter(ground, "COM_OBL_RC_ACT", 5)
-        set_parameter(ground, "COM_OF_LOSS_T", 5.0)
-        set_parameter(ground, "COM_RCL_EXCEPT", 4)
+        set_parameter(arena.instance, "COM_OBL_RC_ACT", 5)
+        set_parameter(arena.instance, "COM_OF_LOSS_T", 5.0)
+        set_parameter(arena.instance, "COM_RCL_EXCEPT", 4)
         _, checks, _ = doctor(arena, mission)
         check(checks["COM_OBL_RC_ACT"]["level"] == "ok", "hold when setpoints stop is well")
         check(checks["COM_RCL_EXCEPT"]["level"] == "ok", "so is offboard without RC")

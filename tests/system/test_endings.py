@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How `jink fly` ends when things go wrong: a missing peer, tracks that stop, Ctrl-C, a hit.
+"""How `jink fly` ends when things go wrong: a missing peer, tracks that stop, Ctrl-C, a hit, as the mission chooses.
 
     test_endings.py JINK INSTANCE
 """
@@ -9,6 +9,7 @@ import signal
 import yaml
 
 from flight import CONFIG, Arena, check, interrupt, main, wait, wait_until
+from ground_station import set_parameter
 
 CROSSING = CONFIG / "scenarios" / "crossing.yaml"
 
@@ -61,6 +62,52 @@ def tracks_stop(jink, instance):
         interrupt(sim)
 
 
+def simulated(arena, scenario):
+    """The simulator, listening."""
+    sim = arena.sim(scenario)
+    wait_until(lambda: "Ctrl-C" in (arena.folder / "sim.txt").read_text(), 60, "the simulator")
+    return sim
+
+
+def refused(jink, instance):
+    """An autopilot that cuts its motors when setpoints stop is flown by who says so, and by nobody else."""
+    with Arena(jink, instance) as arena:
+        sim = simulated(arena, CROSSING)
+        set_parameter(instance, "COM_OBL_RC_ACT", 7)
+        check(wait(arena.fly(arena.mission("sitl")), 60) == 1, "it is refused")
+        check("COM_OBL_RC_ACT 7" in arena.read("fly.json")["reason"], f"reason: {arena.read('fly.json')['reason']}")
+        check(not any(state["armed"] for state in arena.log("fly.jsonl", "state")), "nothing was armed")
+        fly = arena.fly(arena.mission("sitl", endings={"accept": ["motors_cut"]}))
+        wait_until(flying(arena), 60, "flight of a mission that accepts it")
+        check(interrupt(fly) == 1 and last_mode(arena) == "hold", "and ends as any other")
+        interrupt(sim)
+
+
+def ending(jink, instance, cause, fault, choice):
+    """The mission's choice, by what was asked for and the mode in the end."""
+    with Arena(jink, instance) as arena:
+        scenario = yaml.safe_load(CROSSING.read_text())
+        scenario["faults"] = [fault]
+        scenario["obstacles"] = [{"radius": 0.4, "position": [5, -6, 1.5]}]  # from then on nothing is avoided
+        file = arena.folder / "scenario.yaml"
+        file.write_text(yaml.safe_dump(scenario))
+        sim = simulated(arena, file)
+        set_parameter(instance, "RTL_RETURN_ALT", 10.0)
+        fly = arena.fly(arena.mission("sitl", endings={cause: choice}))
+        check(wait(fly, 120) == 1, f"endings.{cause}: {choice} ends with exit status 1")
+        asked = events(arena, "request")
+        check(asked[-1] == choice and last_mode(arena) == choice, f"asked for {asked}, left in {last_mode(arena)}")
+        check(interrupt(sim) == 0, "and hit nothing")
+
+
+def tracks_land(jink, instance):
+    ending(jink, instance, "tracks", {"at": 1.0, "kind": "tracks_stop"}, "land")
+
+
+def battery_return(jink, instance):
+    ending(jink, instance, "battery", {"at": 1.5, "kind": "low_battery", "remaining": 0.06}, "return")
+
+
 def collision(jink, instance):
     """A sphere appears on the vehicle: the simulator's motors stop, and fly says what it saw."""
     with Arena(jink, instance) as arena:
@@ -80,7 +127,7 @@ def collision(jink, instance):
 
 
 def test(jink, instance):
-    for case in (nobody_there, interrupted_in_flight, tracks_stop, collision):
+    for case in (nobody_there, interrupted_in_flight, tracks_stop, refused, tracks_land, battery_return, collision):
         print(f"== {case.__name__}", flush=True)
         case(jink, int(instance))
 

@@ -30,6 +30,7 @@ struct Loop {
       : companion(m, settings, {link, source, planner, {&recorder}}) {
     link.telemetry.mode = vehicle::FlightMode::kHold;
     link.telemetry.armable = link.telemetry.local_position_ok = true;
+    link.telemetry.failsafe_parameters.offboard_loss = 0.0;
   }
 
   bool turn() {

@@ -43,6 +43,29 @@ TEST(Companion, TakesOffAboveWhereItStands) {
   EXPECT_EQ(loop.last().velocity, Vec3::Zero());
 }
 
+TEST(Companion, FliesNotWithAnAutopilotThatCutsItsMotors) {
+  Loop loop;
+  loop.link.telemetry.failsafe_parameters.offboard_loss = 7.0;
+  loop.run(5.0);
+  EXPECT_TRUE(loop.link.requests.empty());
+  EXPECT_TRUE(loop.companion.supervisor().done());
+  EXPECT_NE(loop.companion.summary().reason.find("motors_cut"), std::string::npos);
+  config::Mission m = Loop::mission();
+  m.endings.motors_cut = true;
+  Loop told(m);
+  told.link.telemetry.failsafe_parameters.offboard_loss = 7.0;
+  told.run(5.0);
+  EXPECT_FALSE(told.link.requests.empty());
+}
+
+TEST(Companion, SaysThatTheAutopilotToldNoParameters) {
+  Loop loop;
+  loop.link.telemetry.failsafe_parameters = {};
+  loop.run(5.0);
+  EXPECT_FALSE(loop.link.requests.empty());
+  EXPECT_EQ(loop.recorder.count("parameters"), 1);
+}
+
 TEST(Companion, StreamsNothingWhileItWaits) {
   Loop loop;
   loop.tracks = false;

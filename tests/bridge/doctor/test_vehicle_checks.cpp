@@ -169,32 +169,72 @@ TEST(Doctor, WithTheStateOverDdsTheLinkNeedsNoPositions) {
 TEST(Doctor, KnowsWhatTheParametersDo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::tuple<std::string, double, Level>> cases{
-      {"COM_OBL_RC_ACT", 0.0, Level::kWarning},  {"COM_OBL_RC_ACT", 3.0, Level::kWarning},
-      {"COM_OBL_RC_ACT", 4.0, Level::kOk},       {"COM_OBL_RC_ACT", 5.0, Level::kOk},
-      {"COM_OBL_RC_ACT", 6.0, Level::kFault},    {"COM_OBL_RC_ACT", 7.0, Level::kFault},
-      {"COM_OBL_RC_ACT", 99.0, Level::kWarning}, {"COM_OBL_RC_ACT", nan, Level::kWarning},
-      {"COM_OF_LOSS_T", 0.5, Level::kOk},        {"COM_OF_LOSS_T", 5.0, Level::kWarning},
-      {"COM_OF_LOSS_T", 0.05, Level::kWarning},  {"COM_OF_LOSS_T", nan, Level::kWarning},
-      {"COM_RCL_EXCEPT", 0.0, Level::kWarning},  {"COM_RCL_EXCEPT", 3.0, Level::kWarning},
-      {"COM_RCL_EXCEPT", 7.0, Level::kOk},       {"COM_RCL_EXCEPT", nan, Level::kWarning},
-      {"NAV_DLL_ACT", 0.0, Level::kOk},          {"NAV_DLL_ACT", 2.0, Level::kWarning},
-      {"COM_LOW_BAT_ACT", 0.0, Level::kWarning}, {"COM_LOW_BAT_ACT", 3.0, Level::kOk},
+      {"COM_OBL_RC_ACT", 0.0, Level::kWarning},
+      {"COM_OBL_RC_ACT", 3.0, Level::kWarning},
+      {"COM_OBL_RC_ACT", 4.0, Level::kWarning},
+      {"COM_OBL_RC_ACT", 5.0, Level::kOk},
+      {"COM_OBL_RC_ACT", 6.0, Level::kFault},
+      {"COM_OBL_RC_ACT", 7.0, Level::kFault},
+      {"COM_OBL_RC_ACT", 99.0, Level::kWarning},
+      {"COM_OBL_RC_ACT", nan, Level::kWarning},
+      {"COM_OF_LOSS_T", 0.5, Level::kOk},
+      {"COM_OF_LOSS_T", 5.0, Level::kWarning},
+      {"COM_OF_LOSS_T", 0.05, Level::kWarning},
+      {"COM_OF_LOSS_T", nan, Level::kWarning},
+      {"COM_RCL_EXCEPT", 0.0, Level::kWarning},
+      {"COM_RCL_EXCEPT", 3.0, Level::kWarning},
+      {"COM_RCL_EXCEPT", 7.0, Level::kOk},
+      {"COM_RCL_EXCEPT", nan, Level::kWarning},
+      {"NAV_DLL_ACT", 0.0, Level::kOk},
+      {"NAV_DLL_ACT", 2.0, Level::kWarning},
+      {"COM_LOW_BAT_ACT", 0.0, Level::kWarning},
+      {"COM_LOW_BAT_ACT", 3.0, Level::kWarning},
+      {"COM_LOW_BAT_ACT", 2.0, Level::kOk},
+      {"GF_ACTION", 1.0, Level::kOk},
+      {"GF_ACTION", 2.0, Level::kOk},
+      {"GF_ACTION", 4.0, Level::kFault},
+      {"GF_ACTION", 5.0, Level::kWarning},
   };
   for (const auto& [name, value, level] : cases) {
-    const auto checks = inspect_parameters({{name, {name, true, value}}}, false);
+    const auto checks = inspect_parameters({{name, {name, true, value}}}, {}, false);
     EXPECT_EQ(find(checks, name).level, level) << name << " = " << value << ": " << find(checks, name).finding;
     EXPECT_EQ(find(checks, name).remedy.empty(), level == Level::kOk) << name << " = " << value;
   }
   // As of PX4 1.18: out of modes flown by hand it goes to hold, and does nothing else.
-  EXPECT_EQ(
-      find(inspect_parameters(
-               {{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}, {"NAV_RCL_ACT", {"NAV_RCL_ACT", true, 7.0}}}, false),
-           "COM_RCL_EXCEPT")
-          .level,
-      Level::kOk);
-  // With a remote control at hand its loss is no surprise.
-  EXPECT_EQ(find(inspect_parameters({{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}}, true), "COM_RCL_EXCEPT").level,
+  EXPECT_EQ(find(inspect_parameters(
+                     {{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}, {"NAV_RCL_ACT", {"NAV_RCL_ACT", true, 7.0}}},
+                     {}, false),
+                 "COM_RCL_EXCEPT")
+                .level,
             Level::kOk);
+  // With a remote control at hand its loss is no surprise.
+  EXPECT_EQ(
+      find(inspect_parameters({{"COM_RCL_EXCEPT", {"COM_RCL_EXCEPT", true, 0.0}}}, {}, true), "COM_RCL_EXCEPT").level,
+      Level::kOk);
+}
+
+TEST(Doctor, WarnsWhereTheAutopilotsFailsafeIsNotTheMissionsEnding) {
+  config::Endings endings;
+  endings.link = endings.breach = config::EndsIn::kLand;
+  endings.battery = config::EndsIn::kReturn;
+  const std::map<std::string, vehicle::px4::Parameter> parameters{{"COM_OBL_RC_ACT", {"COM_OBL_RC_ACT", true, 4.0}},
+                                                                  {"COM_LOW_BAT_ACT", {"COM_LOW_BAT_ACT", true, 3.0}},
+                                                                  {"GF_ACTION", {"GF_ACTION", true, 5.0}}};
+  for (const char* name : {"COM_OBL_RC_ACT", "COM_LOW_BAT_ACT", "GF_ACTION"}) {
+    EXPECT_EQ(find(inspect_parameters(parameters, endings, false), name).level, Level::kOk) << name;
+    EXPECT_EQ(find(inspect_parameters(parameters, {}, false), name).level, Level::kWarning) << name;
+  }
+  EXPECT_EQ(find(inspect_parameters(parameters, {}, false), "COM_OBL_RC_ACT").finding,
+            "4: land when setpoints stop; the mission has endings.link: hold");
+}
+
+TEST(Doctor, SaysWhatFlyWillRefuse) {
+  Mission m = mission();
+  LinkFindings h = healthy();
+  h.state.failsafe_parameters.offboard_loss = 7.0;
+  EXPECT_EQ(find(inspect_mission(m, h), "endings").level, Level::kFault);
+  m.endings.motors_cut = true;
+  EXPECT_EQ(bad_ones(inspect_mission(m, h)), "");
 }
 
 TEST(Doctor, LooksAtTheMissionWhereTheVehicleIs) {

@@ -72,11 +72,21 @@ TEST(Hazards, EachRowIsFoundInItsSituationAlone) {
   }
 }
 
-TEST(Hazards, OnlyACriticalBatteryEndsTheFlightAtOnceAndOnTheGround) {
+TEST(Hazards, OnlyACriticalBatteryEndsTheFlightAtOnceAndByDefaultOnTheGround) {
+  const config::Endings defaults;
   for (const Hazard& row : hazards()) {
     const bool battery = row.what == "the battery is critical";
     EXPECT_EQ(row.reaction == Hazard::Reaction::kStop, battery) << row.what;
-    EXPECT_EQ(row.ends_in == Hazard::EndsIn::kLand, battery) << row.what;
+    EXPECT_EQ(defaults.*row.ends_in, battery ? config::EndsIn::kLand : config::EndsIn::kHold) << row.what;
+  }
+}
+
+// Each cause of the mission's endings is that of a hazard.
+TEST(Hazards, EveryEndingOfAMissionIsOneOfAHazard) {
+  using E = config::Endings;
+  for (const auto member : {&E::tracks, &E::link, &E::position, &E::battery, &E::breach, &E::planner}) {
+    const auto rows = hazards();
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Hazard& row) { return row.ends_in == member; }));
   }
 }
 

@@ -105,6 +105,75 @@ TEST(Supervisor, ArrivalIsNotBelievedFromAStalePosition) {
   EXPECT_EQ(flight.supervisor.phase(), Phase::kFlying);
 }
 
+// ---- by the mission's choice
+
+// A flight whose tracks have been stale for long enough, at rest.
+Flight& lose_tracks(Flight& flight) {
+  flight.fly().tracks = false;
+  flight.context.at_rest = true;
+  flight.run(5.0);
+  return flight;
+}
+
+TEST(Supervisor, TheMissionChoosesHowAFlightWithoutTracksEnds) {
+  using vehicle::Command;
+  const std::pair<config::EndsIn, Command> choices[] = {{config::EndsIn::kHold, Command::kHold},
+                                                        {config::EndsIn::kLand, Command::kLand},
+                                                        {config::EndsIn::kReturn, Command::kReturn}};
+  for (const auto& [ending, command] : choices) {
+    config::Mission m = Flight::mission();
+    m.endings.tracks = ending;
+    Flight flight(m);
+    lose_tracks(flight);
+    for (const auto& [other, asked] : choices) EXPECT_EQ(flight.asked(asked) > 0, asked == command);
+    EXPECT_EQ(flight.turn().motion, Motion::kBrake);  // until the heartbeat says so
+    flight.state.mode = ending == config::EndsIn::kHold   ? vehicle::FlightMode::kHold
+                        : ending == config::EndsIn::kLand ? vehicle::FlightMode::kLand
+                                                          : vehicle::FlightMode::kReturn;
+    flight.turn();
+    EXPECT_EQ(flight.turn().motion, Motion::kNone);
+    EXPECT_EQ(flight.supervisor.reason(), "the obstacle tracks are stale");
+  }
+}
+
+TEST(Supervisor, AReturnThatIsRefusedEndsInHold) {
+  config::Mission m = Flight::mission();
+  m.endings.tracks = config::EndsIn::kReturn;
+  Flight flight(m);
+  lose_tracks(flight);
+  flight.refuse(vehicle::Command::kReturn, "denied");
+  flight.run(10.0);
+  EXPECT_EQ(flight.requests.back(), vehicle::Command::kHold);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_TRUE(flight.supervisor.done());
+  EXPECT_EQ(flight.supervisor.reason(),
+            "the obstacle tracks are stale; RETURN was not to be had (return refused: denied)");
+}
+
+TEST(Supervisor, ABatteryThatEndsBringsTheVehicleHomeWhereTheMissionSaysSo) {
+  config::Mission m = Flight::mission();
+  m.endings.battery = config::EndsIn::kReturn;
+  Flight flight(m);
+  flight.fly().context.at_rest = true;
+  flight.state.battery = vehicle::BatteryState::kCritical;
+  flight.run(1.0);
+  EXPECT_EQ(flight.requests.back(), vehicle::Command::kReturn);
+  EXPECT_EQ(flight.asked(vehicle::Command::kLand), 0);
+}
+
+TEST(Supervisor, AnAutopilotThatTellsNoParametersIsWaitedForAWhile) {
+  Flight flight;
+  flight.state.failsafe_parameters.offboard_loss.reset();
+  flight.run(2.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kWaiting);
+  EXPECT_NE(flight.supervisor.waiting_for().find("parameters"), std::string::npos);
+  flight.run(1.5);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
+}
+
+// ---- landing
+
 // With its motors PX4 leaves LAND for the mode before, and CURRENT_MODE says so up to a second before the heartbeat.
 TEST(Supervisor, TheModeOfBeforeALandingIsNoReasonToLandAgain) {
   config::Mission m = Flight::mission();

@@ -36,6 +36,7 @@ class Link final : public vehicle::VehicleLink {
     state.local_position_ok = true;
     state.in_air = autopilot_.landed_state() != sim::vehicle::LandedState::kOnGround;
     state.home_height = autopilot_.home().z() - vehicle_.origin.z();
+    state.failsafe_parameters.offboard_loss = 0.0;
     state.origin = origin_;
     state.system_id = vehicle_.system_id;
     return state;

@@ -356,6 +356,7 @@ struct TeamCompanion {
       state.heartbeat_stamp = t;
       state.armed = state.armable = state.local_position_ok = true;
       state.home_height = 0.0;
+      state.failsafe_parameters.offboard_loss = 0.0;
       state.mode = t > from + 0.1 ? vehicle::FlightMode::kOffboard : vehicle::FlightMode::kHold;
       companion->step(t);
     }
