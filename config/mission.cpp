@@ -105,27 +105,63 @@ Transport read_transport(const Value& value) {
   return value.choice(kNames) == 0 ? Transport::kMavlink : Transport::kDds;
 }
 
-// What may stand before PX4's topics: one or more names of letters, digits and underscores, parted by slashes.
 std::string read_namespace(const Value& value) {
   std::string text = value.text();
-  const auto good = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/';
-  };
-  if (!std::all_of(text.begin(), text.end(), good) || text.front() == '/' || text.back() == '/') {
-    value.fail("is not a namespace; expected names of letters, digits and _, parted by /");
-  }
+  if (!is_namespace(text)) value.fail("is not a namespace; expected names of letters, digits and _, parted by /");
   return text;
 }
 
+constexpr std::array<std::string_view, 2> kTrackTopics = {"jink", "autoware"};
+
+// By topic, the names of DDS participants. Without `sources` of its own the mission reads the topics that have some.
+void read_writers(const Value& value, bool sources_given, TrackPolicy& tracks) {
+  constexpr std::size_t kMostWriters = 100;
+  const Map map(value, {kTrackTopics.begin(), kTrackTopics.end()});
+  const std::array<bool*, 2> sources = {&tracks.sources.jink, &tracks.sources.autoware};
+  for (std::size_t i = 0; i < kTrackTopics.size(); ++i) {
+    const auto names = map.find(kTrackTopics[i]);
+    if (!sources_given) *sources[i] = names.has_value();
+    if (names.has_value() != *sources[i]) {
+      value.fail("is not as tracks.sources, which " + std::string(names ? "leave out '" : "have '") +
+                 std::string(kTrackTopics[i]) + "'");
+    }
+    if (!names) continue;
+    for (const Value& name : names->list(1, kMostWriters))
+      tracks.writers.push_back({static_cast<TrackTopic>(i), name.text()});
+  }
+}
+
+GeodeticOrigin read_origin(const Value& value) {
+  const std::vector<Value> numbers = value.list(3, 3);
+  return {numbers[0].number(within(90)), numbers[1].number(within(180)), numbers[2].number(within(10'000))};
+}
+
+std::filesystem::path read_security(const Value& value, const std::filesystem::path& mission) {
+  const std::filesystem::path folder = mission.parent_path() / value.text();
+  const std::string_view missing = missing_security_file(folder);
+  if (!missing.empty()) value.fail("holds no file " + std::string(missing));
+  return std::filesystem::absolute(folder);
+}
+
 TrackPolicy read_tracks(const Value& value) {
-  const Map map(value, {"required", "timeout_s", "coast_s", "sensed_from", "sources"});
+  const Map map(value,
+                {"required", "timeout_s", "coast_s", "sensed_from", "sources", "namespace", "writers", "origins"});
   TrackPolicy tracks;
   if (const auto required = map.find("required")) tracks.required = required->boolean();
   tracks.timeout_s = map.number_or("timeout_s", above(0, 60), tracks.timeout_s);
   tracks.coast_s = map.number_or("coast_s", closed(0, 60), tracks.coast_s);
   if (const auto from = map.find("sensed_from"))
     tracks.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
-  if (const auto sources = map.find("sources")) tracks.sources = read_sources(*sources);
+  const auto sources = map.find("sources");
+  if (sources) tracks.sources = read_sources(*sources);
+  if (const auto name = map.find("namespace")) tracks.name_space = read_namespace(*name);
+  if (const auto writers = map.find("writers")) read_writers(*writers, sources.has_value(), tracks);
+  if (const auto origins = map.find("origins")) {
+    const Map topics(*origins, {kTrackTopics.begin(), kTrackTopics.end()});
+    for (std::size_t i = 0; i < kTrackTopics.size(); ++i) {
+      if (const auto origin = topics.find(kTrackTopics[i])) tracks.origins[i] = read_origin(*origin);
+    }
+  }
   return tracks;
 }
 
@@ -160,6 +196,21 @@ Endings read_endings(const Value& value) {
 
 }  // namespace
 
+bool is_namespace(std::string_view text) {
+  const auto good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/';
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), good) && text.front() != '/' && text.back() != '/';
+}
+
+std::string_view missing_security_file(const std::filesystem::path& folder) {
+  for (const char* name : {"identity_ca.cert.pem", "cert.pem", "key.pem", "permissions_ca.cert.pem", "governance.p7s",
+                           "permissions.p7s"}) {
+    if (!std::filesystem::is_regular_file(folder / name)) return name;
+  }
+  return {};
+}
+
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(
       read_document(file),
@@ -183,9 +234,10 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
     mission.arrival = arrival->choice(kArrivals) == 0 ? Arrival::kLand : Arrival::kHold;
   }
   if (const auto dds = map.find("dds")) {
-    const Map keys(*dds, {"domain", "namespace"});
+    const Map keys(*dds, {"domain", "namespace", "security"});
     if (const auto id = keys.find("domain")) mission.dds_domain = id->integer(closed(0, 232));  // as RTPS's ports allow
     if (const auto name = keys.find("namespace")) mission.dds_namespace = read_namespace(*name);
+    if (const auto folder = keys.find("security")) mission.dds_security = read_security(*folder, file);
   }
   if (const auto state = map.find("state")) mission.state = read_transport(*state);
   if (const auto setpoints = map.find("setpoints")) mission.setpoints = read_transport(*setpoints);

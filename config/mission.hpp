@@ -2,8 +2,11 @@
 // A mission for `jink fly` and `jink doctor`, as the file describes it: plain values, checked.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/sensed_from.hpp"
@@ -46,12 +49,31 @@ struct Endings {
   bool hover_until_empty = false;   ///< HOLD with a critical battery
 };
 
+/// A source of tracks on DDS; whose index is that in TrackPolicy::origins.
+enum class TrackTopic { kJink, kAutoware };
+
+/// A DDS participant whose tracks of a topic are taken, and needed.
+struct TrackWriter {
+  TrackTopic topic = TrackTopic::kJink;
+  std::string participant;
+};
+
+/// WGS 84, as bridge::frames::Geodetic.
+struct GeodeticOrigin {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double altitude_m = 0.0;  ///< above the sea
+};
+
 struct TrackPolicy {
   bool required = true;    ///< no flight without a live track writer
   double timeout_s = 1.0;  ///< silence of the writers after which the tracks are stale
   double coast_s = 1.0;    ///< how long a track that is no longer reported is predicted on
   SensedFrom sensed_from = SensedFrom::kWorld;
   TrackSources sources;
+  std::string name_space;                                ///< before the topics: "uav_1" means rt/uav_1/jink/...
+  std::vector<TrackWriter> writers;                      ///< each is needed, and others are not heard; empty: any is
+  std::array<std::optional<GeodeticOrigin>, 2> origins;  ///< of the topics' frames; none: the autopilot's local origin
 };
 
 struct Mission {
@@ -67,7 +89,8 @@ struct Mission {
   Arrival arrival = Arrival::kLand;
   planner::base::Box geofence;  ///< unbounded when the file has none
   int dds_domain = 0;
-  std::string dds_namespace;  ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
+  std::string dds_namespace;           ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
+  std::filesystem::path dds_security;  ///< folder of keys as SROS 2 lays out an enclave's; empty: none
   Transport state = Transport::kMavlink;
   Transport setpoints = Transport::kMavlink;
   bool intents = true;  ///< tells the team's other vehicles the committed path, and avoids theirs
@@ -81,14 +104,19 @@ struct Mission {
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
 /// system_id, takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min
-/// and max when given), dds.domain, dds.namespace, tracks and each of its keys, endings and each of its keys, state and
-/// setpoints (mavlink or dds), intents, time_limit.
+/// and max when given), dds and each of its keys (security: a folder, from the file's on), tracks and each of its keys,
+/// endings and each of its keys, state and setpoints (mavlink or dds), intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
 /// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. With heights above the ground a waypoint
 /// may be lower than min_height, as the flight raises it to that; so raised it must lie in the geofence, and
 /// takeoff_height and min_height must be below the geofence's top. With others that shows where the vehicle stands.
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles = {});
+
+/// Whether `text` may stand before topics: names of letters, digits and underscores, parted by slashes.
+[[nodiscard]] bool is_namespace(std::string_view text);
+/// The first file that a folder of DDS keys lacks, as SROS 2 makes them for an enclave; empty: none.
+[[nodiscard]] std::string_view missing_security_file(const std::filesystem::path& folder);
 
 /// `mission` with its heights as z of a local ENU frame, min_height too: `ground` is that of the ground, `origin_amsl`
 /// the origin's height above the sea.

@@ -162,9 +162,10 @@ void Companion::stop_without_planner(double now) {
 supervisor::FlightContext Companion::context(double now) {
   const vehicle::VehicleState& state = intake_.state();
   supervisor::FlightContext context;
-  context.newest_tracks = intake_.table().newest_message();
+  context.newest_tracks = intake_.newest_tracks();
+  context.silent_writer = intake_.silent_writer(now);
   context.newest_plan = planning_.newest_plan();
-  context.lost_writers = intake_.lost_writers(now, supervisor_.flight_began().has_value());
+  context.lost_writers = intake_.lost_writers(now, supervisor_.flight_began());
   context.unsent_for = motion_.unsent_for(now);
   context.misplaced = misplaced_;
   context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "bridge/tracking/track_inbox.hpp"
+
 namespace jink::bridge::companion {
 namespace {
 
@@ -40,11 +42,17 @@ bool Intake::take_tracks(double now) {
   bool any = false;
   // A turn takes no more than so many: a writer at full speed must not keep the setpoints waiting.
   for (int taken = 0; taken < kMostMessages && tracks_.poll(message); ++taken) {
+    if (tracking::elsewhere(message, mission_.geofence)) {
+      ++elsewhere_;
+      continue;
+    }
     table_.ingest(message);
     any = true;
   }
   // Sooner than that is a hazard: by then the tracks would be forgotten.
-  table_.miss(most_writers_ > table_.live_writers(now, kMissedAfter * mission_.tracks.coast_s));
+  const double missed_after = kMissedAfter * mission_.tracks.coast_s;
+  table_.miss(mission_.tracks.writers.empty() ? table_.lost_writers(now, missed_after, flight_began_) > 0
+                                              : now - newest_tracks().value_or(now) > missed_after);
   if (any && state_.motion.silence(now) <= settings_.companion.stale_state)
     table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
   return any;
@@ -54,10 +62,28 @@ void Intake::listen_to_team(double now) {
   if (team_) team_->listen(now, state_);
 }
 
-int Intake::lost_writers(double now, bool in_flight) {
-  const int live = table_.live_writers(now, mission_.tracks.timeout_s);
-  if (in_flight) most_writers_ = std::max(most_writers_, live);
-  return std::max(0, most_writers_ - live);
+std::optional<double> Intake::newest_tracks() const {
+  const std::size_t named = mission_.tracks.writers.size();
+  if (named == 0) return table_.newest_message();
+  std::optional<double> oldest = table_.newest_of(1);
+  for (std::size_t i = 2; i <= named && oldest; ++i) {
+    const std::optional<double> newest = table_.newest_of(i);
+    oldest = newest ? std::optional(std::min(*oldest, *newest)) : std::nullopt;
+  }
+  return oldest;
+}
+
+std::string Intake::silent_writer(double now) const {
+  for (std::size_t i = 0; i < mission_.tracks.writers.size(); ++i) {
+    const std::optional<double> newest = table_.newest_of(i + 1);
+    if (!newest || now - *newest > mission_.tracks.timeout_s) return mission_.tracks.writers[i].participant;
+  }
+  return {};
+}
+
+int Intake::lost_writers(double now, std::optional<double> flight_began) {
+  flight_began_ = flight_began.value_or(planner::base::kInfinity);
+  return mission_.tracks.writers.empty() ? table_.lost_writers(now, mission_.tracks.timeout_s, flight_began_) : 0;
 }
 
 }  // namespace jink::bridge::companion

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bridge/team/team.hpp"
@@ -42,8 +43,16 @@ class Intake {
   [[nodiscard]] tracking::TrackSourceStatus source_status() const { return tracks_.status(); }
   /// Null: there is none.
   [[nodiscard]] team::Team* team() { return team_ ? &*team_ : nullptr; }
-  /// Writers that watched in this flight, and watch no more, nor anybody in their place.
-  [[nodiscard]] int lost_writers(double now, bool in_flight);
+  /// Reception of the newest tracks; where the mission names writers, of that one's which is silent for longest. None:
+  /// none yet, or none of one of these.
+  [[nodiscard]] std::optional<double> newest_tracks() const;
+  /// The first that the mission names and that is silent; empty: there is none.
+  [[nodiscard]] std::string silent_writer(double now) const;
+  /// Writers that watched in this flight, and watch no more, nor anybody in their place; 0 where the mission names who
+  /// is to watch. `flight_began`: none: it has not.
+  [[nodiscard]] int lost_writers(double now, std::optional<double> flight_began);
+  /// Messages of tracks that are all farther out of the geofence than it is wide: of another frame.
+  [[nodiscard]] std::uint64_t elsewhere() const { return elsewhere_; }
 
  private:
   const config::Mission& mission_;
@@ -57,7 +66,8 @@ class Intake {
   std::uint32_t reboots_ = 0;          // likewise
   Vec3 estimate_shift_ = Vec3::Zero();
   std::optional<double> ground_;
-  int most_writers_ = 0;  // live at once in this flight
+  double flight_began_ = planner::base::kInfinity;
+  std::uint64_t elsewhere_ = 0;
 };
 
 }  // namespace jink::bridge::companion

@@ -150,8 +150,12 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
   const bool said_now = said_.at && std::floor(now) == std::floor(*said_.at);
   said_.at = now;
   if (said_now) return;
-  if (sources.bad_frames != said_.sources.bad_frames || sources.dropped_tracks != said_.sources.dropped_tracks)
+  if (sources.refused != said_.sources.refused || sources.dropped_tracks != said_.sources.dropped_tracks)
     event(now, "tracks_refused", sources.last_refusal);
+  if (changed(said_.elsewhere, intake.elsewhere()))
+    event(now, "tracks_refused",
+          std::to_string(said_.elsewhere) +
+              " track messages: all is farther beside the geofence than that is wide: given in another frame?");
   announce_tracks(now, intake.table());
   if (sources.malformed != said_.sources.malformed)
     event(now, "tracks_malformed", std::to_string(sources.malformed) + " track messages could not be decoded");

@@ -111,6 +111,7 @@ class FlightReporter {
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;
+    std::uint64_t elsewhere = 0;
     int own_tracks = 0;
     std::optional<double> at;
   };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/dds/discovery.hpp"
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <algorithm>
@@ -48,35 +47,14 @@ std::vector<std::string> qos_mismatches(const DdsEndpoint& theirs) {
   return names;
 }
 
-std::vector<std::string> DdsDiscovery::participants() const {
-  const std::scoped_lock lock(mutex_);
-  std::vector<std::string> names;
-  for (const auto& [prefix, name] : participants_) names.push_back(name);
-  return names;
-}
-
 std::vector<DdsEndpoint> DdsDiscovery::endpoints() const {
   const std::scoped_lock lock(mutex_);
   std::vector<DdsEndpoint> all;
   for (const auto& [guid, endpoint] : endpoints_) {
     all.push_back(endpoint);
-    const auto owner = participants_.find(guid.guidPrefix);
-    all.back().participant = owner == participants_.end() ? "?" : owner->second;
+    all.back().participant = name_of(guid.guidPrefix);
   }
   return all;
-}
-
-void DdsDiscovery::on_participant_discovery(dds::DomainParticipant* own, rtps::ParticipantDiscoveryInfo&& info) {
-  const Prefix prefix = info.info.m_guid.guidPrefix;
-  if (own != nullptr && prefix == own->guid().guidPrefix) return;
-  const std::scoped_lock lock(mutex_);
-  if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
-      info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
-    participants_.erase(prefix);
-    return;
-  }
-  const std::string name = cdr::printable(info.info.m_participantName.to_string());
-  participants_[prefix] = name.empty() ? "?" : name;
 }
 
 void DdsDiscovery::on_subscriber_discovery(dds::DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) {

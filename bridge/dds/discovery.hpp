@@ -32,25 +32,19 @@ struct DdsEndpoint {
 [[nodiscard]] std::vector<std::string> qos_mismatches(const DdsEndpoint& theirs);
 
 /// Hears of all that others have in the domain. Safe from any thread.
-class DdsDiscovery final : public dds::DomainParticipantListener {
+class DdsDiscovery final : public ParticipantNames {
  public:
-  /// Names of the other participants.
-  [[nodiscard]] std::vector<std::string> participants() const;
   [[nodiscard]] std::vector<DdsEndpoint> endpoints() const;
 
-  void on_participant_discovery(dds::DomainParticipant* own,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
   void on_subscriber_discovery(dds::DomainParticipant* own,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void on_publisher_discovery(dds::DomainParticipant* own,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
 
  private:
-  using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
   using Guid = eprosima::fastrtps::rtps::GUID_t;
 
-  mutable std::mutex mutex_;  // guards all below
-  std::map<Prefix, std::string> participants_;
+  mutable std::mutex mutex_;  // guards endpoints_
   std::map<Guid, DdsEndpoint> endpoints_;
 };
 

@@ -20,7 +20,7 @@ class DdsIntents::Impl {
       : clock_(clock),
         writer_(node, kIntentsTopic, kIntentsType),
         reader_(node, kIntentsTopic, kIntentsType,
-                [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
+                [this](const Payload& payload, const SampleWriter& writer) { accept(payload, writer.identity); }) {}
 
   bool poll(team::IntentMessage& message) {
     const std::scoped_lock lock(mutex_);

@@ -3,6 +3,7 @@
 // and its discovery is paid for once. What is made on it is private to the bridge (dds_support).
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -18,9 +19,12 @@ inline constexpr int kMaxDdsDomain = 232;  ///< the port formula of DDS ends the
 /// otherwise. Safe from any thread. It must outlive what is made on it.
 class DdsParticipant {
  public:
-  /// Returns at once; discovery goes on in the background. `name` is what other tools show.
-  /// @throws std::runtime_error, one line, for a domain outside [0, 232] or when Fast DDS cannot open its transports.
-  explicit DdsParticipant(int domain, const std::string& name = "jink");
+  /// Returns at once; discovery goes on in the background. `name` is what other tools show. `security`: a folder of
+  /// keys as SROS 2 lays out an enclave's (OMG DDS Security 1.1): what its governance says is authenticated and
+  /// encrypted, and whom it does not let in is not seen. Empty: none.
+  /// @throws std::runtime_error, one line, for a domain outside [0, 232], keys that are not valid, or when Fast DDS
+  /// cannot open its transports.
+  explicit DdsParticipant(int domain, const std::string& name = "jink", const std::filesystem::path& security = {});
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;

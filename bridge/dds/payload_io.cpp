@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -28,6 +29,25 @@ extern "C" const char* __asan_default_options() {
 namespace jink::bridge::dds {
 
 namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+// OMG DDS Security 1.1, the built-in plugins; file names as SROS 2 has them.
+void secure(dds::DomainParticipantQos& qos, const std::filesystem::path& folder) {
+  auto& properties = qos.properties().properties();
+  const auto file = [&](const char* name) { return "file://" + (folder / name).string(); };
+  const std::string authentication = "dds.sec.auth.builtin.PKI-DH.";
+  const std::string access = "dds.sec.access.builtin.Access-Permissions.";
+  properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
+  properties.emplace_back(authentication + "identity_ca", file("identity_ca.cert.pem"));
+  properties.emplace_back(authentication + "identity_certificate", file("cert.pem"));
+  properties.emplace_back(authentication + "private_key", file("key.pem"));
+  properties.emplace_back("dds.sec.access.plugin", "builtin.Access-Permissions");
+  properties.emplace_back(access + "permissions_ca", file("permissions_ca.cert.pem"));
+  properties.emplace_back(access + "governance", file("governance.p7s"));
+  properties.emplace_back(access + "permissions", file("permissions.p7s"));
+  properties.emplace_back("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+}
 
 // A burst of fragments; Linux gives what net.core.*mem_max allows.
 constexpr std::uint32_t kSocketBuffer_bytes = 1 << 20;
@@ -100,8 +120,35 @@ std::string discovery_trouble(int domain) {
          "ports Linux gives to nobody who does not ask for them";
 }
 
-DdsParticipant::Impl::Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery)
-    : domain_(domain) {
+std::string ParticipantNames::name_of(const Prefix& prefix) const {
+  const std::scoped_lock lock(mutex_);
+  const auto known = names_.find(prefix);
+  return known == names_.end() ? "?" : known->second;
+}
+
+std::vector<std::string> ParticipantNames::all() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [prefix, name] : names_) names.push_back(name);
+  return names;
+}
+
+void ParticipantNames::on_participant_discovery(dds::DomainParticipant* own, rtps::ParticipantDiscoveryInfo&& info) {
+  const Prefix prefix = info.info.m_guid.guidPrefix;
+  if (own != nullptr && prefix == own->guid().guidPrefix) return;
+  const std::scoped_lock lock(mutex_);
+  if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+      info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    names_.erase(prefix);
+    return;
+  }
+  const std::string name = cdr::printable(info.info.m_participantName.to_string());
+  names_[prefix] = name.empty() ? "?" : name;
+}
+
+DdsParticipant::Impl::Impl(int domain, const std::string& name, const std::filesystem::path& security,
+                           ParticipantNames* discovery)
+    : domain_(domain), names_(discovery != nullptr ? discovery : &own_names_) {
   if (domain < 0 || domain > kMaxDdsDomain) {
     throw std::runtime_error("dds.domain " + std::to_string(domain) + " is outside [0, 232]");
   }
@@ -112,7 +159,8 @@ DdsParticipant::Impl::Impl(int domain, const std::string& name, dds::DomainParti
   auto& transport = qos.transport();
   if (transport.listen_socket_buffer_size == 0) transport.listen_socket_buffer_size = kSocketBuffer_bytes;
   if (transport.send_socket_buffer_size == 0) transport.send_socket_buffer_size = kSocketBuffer_bytes;
-  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(domain), qos, discovery,
+  if (!security.empty()) secure(qos, security);
+  participant_ = factory->create_participant(static_cast<dds::DomainId_t>(domain), qos, names_,
                                              dds::StatusMask::none());  // samples and matches are the endpoints' own
   if (participant_ != nullptr) {
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
@@ -123,7 +171,8 @@ DdsParticipant::Impl::Impl(int domain, const std::string& name, dds::DomainParti
       participant_->delete_contained_entities();
       factory->delete_participant(participant_);
     }
-    throw std::runtime_error("DDS domain " + std::to_string(domain) + ": Fast DDS cannot open its transports");
+    throw std::runtime_error("DDS domain " + std::to_string(domain) + ": Fast DDS cannot open its transports" +
+                             (security.empty() ? "" : ", or takes the keys in " + security.string() + " for none"));
   }
 }
 
@@ -144,7 +193,8 @@ dds::Topic* DdsParticipant::Impl::topic(const std::string& name, const std::stri
   return topic;
 }
 
-DdsParticipant::DdsParticipant(int domain, const std::string& name) : impl_(std::make_unique<Impl>(domain, name)) {}
+DdsParticipant::DdsParticipant(int domain, const std::string& name, const std::filesystem::path& security)
+    : impl_(std::make_unique<Impl>(domain, name, security)) {}
 DdsParticipant::DdsParticipant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 DdsParticipant::~DdsParticipant() = default;
 int DdsParticipant::domain() const {
@@ -179,7 +229,8 @@ void PayloadReader::on_data_available(dds::DataReader* reader) {
   dds::SampleInfo info;
   while (reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
-    take_(sample_, identity_of(info.sample_identity.writer_guid()));
+    const auto& writer = info.sample_identity.writer_guid();
+    take_(sample_, {identity_of(writer), writer.guidPrefix});
   }
 }
 

@@ -19,6 +19,7 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -49,11 +50,31 @@ class PayloadType final : public dds::TopicDataType {
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override;
 };
 
+/// The names of the domain's participants, as discovery tells them: a claim of theirs, unless the domain is secured.
+/// Safe from any thread.
+class ParticipantNames : public dds::DomainParticipantListener {
+ public:
+  using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+
+  /// "?" where it has none or is not known.
+  [[nodiscard]] std::string name_of(const Prefix& prefix) const;
+  /// Of all others.
+  [[nodiscard]] std::vector<std::string> all() const;
+
+  void on_participant_discovery(dds::DomainParticipant* own,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+
+ private:
+  mutable std::mutex mutex_;  // guards names_
+  std::map<Prefix, std::string> names_;
+};
+
 /// The participant. A topic or type that is asked for again is the same one; they live as long as the node.
 class DdsParticipant::Impl {
  public:
   /// `discovery`, where given, hears of the domain's participants and endpoints; it must outlive this.
-  Impl(int domain, const std::string& name, dds::DomainParticipantListener* discovery = nullptr);
+  Impl(int domain, const std::string& name, const std::filesystem::path& security = {},
+       ParticipantNames* discovery = nullptr);
   ~Impl();
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -64,9 +85,12 @@ class DdsParticipant::Impl {
   [[nodiscard]] dds::Publisher& publisher() { return *publisher_; }
   [[nodiscard]] dds::Subscriber& subscriber() { return *subscriber_; }
   [[nodiscard]] int domain() const { return domain_; }
+  [[nodiscard]] const ParticipantNames& names() const { return *names_; }
 
  private:
   int domain_;
+  ParticipantNames own_names_;
+  ParticipantNames* names_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;
@@ -74,11 +98,17 @@ class DdsParticipant::Impl {
   std::map<std::string, dds::Topic*> topics_;
 };
 
+/// Who wrote a sample.
+struct SampleWriter {
+  std::uint64_t identity = 0;            ///< stable
+  ParticipantNames::Prefix participant;  ///< for ParticipantNames::name_of
+};
+
 /// Reads a topic best effort, volatile, keep last: any writer's reliability and durability matches. Payloads are handed
-/// to `take` one after another, on Fast DDS's thread, with the identity of their writer; `take` must not call DDS.
+/// to `take` one after another, on Fast DDS's thread, with their writer; `take` must not call DDS.
 class PayloadReader final : private dds::DataReaderListener {
  public:
-  using Take = std::function<void(const Payload& payload, std::uint64_t writer)>;
+  using Take = std::function<void(const Payload& payload, const SampleWriter& writer)>;
   static constexpr int kDepth = 64;  ///< samples of several writers that may wait for `take`
 
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.

@@ -60,7 +60,9 @@ class DdsVehicleLink::Impl {
       setpoint_writer_.emplace(node, name(kTrajectorySetpointTopic), kTrajectorySetpointType);
     }
     if (options.state) {
-      const auto take = [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); };
+      const auto take = [this](const Payload& payload, const SampleWriter& writer) {
+        accept(payload, writer.identity);
+      };
       reader_.emplace(node, name(kLocalPositionTopic), kLocalPositionType, take);
       reader_v1_.emplace(node, name(kLocalPositionTopicV1), kLocalPositionType, take);
     }

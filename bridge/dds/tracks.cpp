@@ -10,6 +10,7 @@
 #include "ObstacleTracks.h"
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
+#include "bridge/frames/conversions.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 
 namespace jink::bridge::dds {
@@ -29,11 +30,13 @@ void to_wire(const Vec3& v, Wire& wire) {
 
 class DdsTrackReader::Impl {
  public:
-  Impl(DdsParticipant& node, const base::Clock& clock, TrackFormat format)
+  Impl(DdsParticipant& node, const base::Clock& clock, const TrackReaderOptions& options)
       : clock_(clock),
-        topic_(topic_of(format)),
-        reader_(node, topic_.name, topic_.type,
-                [this](const Payload& payload, std::uint64_t writer) { accept(payload, writer); }) {}
+        options_(options),
+        names_(node.impl().names()),
+        topic_(topic_of(options.format)),
+        reader_(node, track_topic(options.format, options.name_space), topic_.type,
+                [this](const Payload& payload, const SampleWriter& writer) { accept(payload, writer); }) {}
 
   bool poll(tracking::TrackMessage& message) { return inbox_.poll(message); }
   void notify(base::Notifier& notifier) { inbox_.notify(notifier); }
@@ -48,9 +51,8 @@ class DdsTrackReader::Impl {
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
  private:
-  /// A topic and what its payloads are.
+  /// What a topic's payloads are.
   struct Topic {
-    const char* name;
     const char* type;
     /// Nothing where a payload is not of the type.
     std::optional<tracking::DecodedTracks> (*decode)(std::span<const std::uint8_t> payload);
@@ -60,45 +62,81 @@ class DdsTrackReader::Impl {
 
   static Topic topic_of(TrackFormat format) {
     if (format == TrackFormat::kAutoware) {
-      return {kAutowareTopic, kAutowareType, cdr::decode_tracked_objects, [](const std::string& frame_id) {
+      return {kAutowareType, cdr::decode_tracked_objects, [](const std::string& frame_id) {
                 if (frame_id == "map") return std::string();
                 return "TrackedObjects: frame_id '" + cdr::printable(frame_id) + "' is not 'map'";
               }};
     }
-    return {kTracksTopic, kTracksType, cdr::decode_obstacle_tracks, [](const std::string& frame_id) {
+    return {kTracksType, cdr::decode_obstacle_tracks, [](const std::string& frame_id) {
               if (frame_id == "map" || frame_id == "ned") return std::string();
               return "frame_id '" + cdr::printable(frame_id) + "' is neither 'map' nor 'ned'";
             }};
   }
 
   // On Fast DDS's thread: the payload as a message into the inbox, or refused.
-  void accept(const Payload& payload, std::uint64_t writer) {
+  void accept(const Payload& payload, const SampleWriter& writer) {
     const double received = clock_.now();
+    std::size_t named = 0;
+    if (!options_.writers.empty()) {
+      const std::string name = names_.name_of(writer.participant);
+      const auto allowed = options_.writers.find(name);
+      if (allowed == options_.writers.end())
+        return inbox_.refuse("tracks of '" + name + "', whom the mission does not name");
+      named = allowed->second;
+    }
     std::optional<tracking::DecodedTracks> message = topic_.decode(payload);
     if (!message) {
       ++malformed_;
-    } else if (const std::string why = topic_.refuse_frame(message->frame_id); !why.empty()) {
-      inbox_.refuse_frame(why);
-    } else {
-      message->tracks.writer = writer;
-      message->tracks.received = received;
-      message->tracks.stamp_age = system_time() - message->stamp_unix_s;
-      inbox_.put(std::move(message->tracks), message->why);
+      return;
     }
+    if (const std::string why = topic_.refuse_frame(message->frame_id); !why.empty()) return inbox_.refuse(why);
+    if (options_.origin && !place(message->tracks))
+      return inbox_.refuse("tracks with an origin of their own: the autopilot's is not known yet");
+    message->tracks.named = named;
+    message->tracks.writer = writer.identity;
+    message->tracks.received = received;
+    message->tracks.stamp_age = system_time() - message->stamp_unix_s;
+    inbox_.put(std::move(message->tracks), message->why);
+  }
+
+  // From the source's frame into the autopilot's; false where that is not known.
+  bool place(tracking::TrackMessage& message) {
+    const std::optional<frames::Geodetic> local = options_.local_origin();
+    if (!local) return false;
+    if (local != local_origin_) {
+      local_origin_ = local;
+      to_local_ = frames::between(*options_.origin, *local);
+    }
+    for (Track& track : message.tracks) {
+      track.position = to_local_ * track.position;
+      track.velocity = to_local_.linear() * track.velocity;
+      track.acceleration = to_local_.linear() * track.acceleration;
+    }
+    message.placed = true;
+    return true;
   }
 
   const base::Clock& clock_;
-  Topic topic_;
+  const TrackReaderOptions options_;
+  const ParticipantNames& names_;
+  const Topic topic_;
+  std::optional<frames::Geodetic> local_origin_;
+  Eigen::Isometry3d to_local_ = Eigen::Isometry3d::Identity();
   std::atomic<std::uint64_t> malformed_ = 0;
   tracking::TrackInbox inbox_;
   PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
-DdsTrackReader::DdsTrackReader(DdsParticipant& node, const base::Clock& clock, TrackFormat format)
-    : impl_(std::make_unique<Impl>(node, clock, format)) {}
+std::string track_topic(TrackFormat format, const std::string& name_space) {
+  const std::string topic = format == TrackFormat::kAutoware ? kAutowareTopic : kTracksTopic;
+  return name_space.empty() ? topic : "rt/" + name_space + topic.substr(2);
+}
+
+DdsTrackReader::DdsTrackReader(DdsParticipant& node, const base::Clock& clock, const TrackReaderOptions& options)
+    : impl_(std::make_unique<Impl>(node, clock, options)) {}
 DdsTrackReader::DdsTrackReader(int domain, const base::Clock& clock)
     : own_node_(std::make_unique<DdsParticipant>(domain, "jink track reader")),
-      impl_(std::make_unique<Impl>(*own_node_, clock, TrackFormat::kJink)) {}
+      impl_(std::make_unique<Impl>(*own_node_, clock, TrackReaderOptions{})) {}
 DdsTrackReader::~DdsTrackReader() = default;
 bool DdsTrackReader::poll(tracking::TrackMessage& message) {
   return impl_->poll(message);
@@ -119,7 +157,8 @@ std::uint64_t DdsTrackReader::malformed() const {
 class DdsTrackWriter::Impl {
  public:
   // A message of some 430 tracks and more does not fit one datagram.
-  explicit Impl(DdsParticipant& node) : writer_(node, kTracksTopic, kTracksType, {.large = true}) {}
+  Impl(DdsParticipant& node, const std::string& name_space)
+      : writer_(node, track_topic(TrackFormat::kJink, name_space), kTracksType, {.large = true}) {}
 
   bool publish(std::span<const Track> tracks, double stamp_unix_s, const std::string& frame_id) {
     const double sec = std::floor(stamp_unix_s);
@@ -148,10 +187,11 @@ class DdsTrackWriter::Impl {
   PayloadWriter writer_;
 };
 
-DdsTrackWriter::DdsTrackWriter(DdsParticipant& node) : impl_(std::make_unique<Impl>(node)) {}
-DdsTrackWriter::DdsTrackWriter(int domain)
-    : own_node_(std::make_unique<DdsParticipant>(domain, "jink track writer")),
-      impl_(std::make_unique<Impl>(*own_node_)) {}
+DdsTrackWriter::DdsTrackWriter(DdsParticipant& node, const std::string& name_space)
+    : impl_(std::make_unique<Impl>(node, name_space)) {}
+DdsTrackWriter::DdsTrackWriter(int domain, const std::string& name_space, const std::filesystem::path& security)
+    : own_node_(std::make_unique<DdsParticipant>(domain, "jink track writer", security)),
+      impl_(std::make_unique<Impl>(*own_node_, name_space)) {}
 DdsTrackWriter::~DdsTrackWriter() = default;
 bool DdsTrackWriter::publish(std::span<const Track> tracks, double stamp_unix_s, const std::string& frame_id) {
   return impl_->publish(tracks, stamp_unix_s, frame_id);

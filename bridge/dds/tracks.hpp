@@ -3,17 +3,24 @@
 // the wire is ROS 2's (bridge/dds/idl), so that a ROS node, or any other DDS program, can stand at either end.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "bridge/base/clock.hpp"
 #include "bridge/dds/participant.hpp"
+#include "bridge/frames/geodetic.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 
 namespace jink::bridge::dds {
 
+// Without a namespace.
 inline constexpr const char* kTracksTopic = "rt/jink/obstacle_tracks";  ///< ROS 2: /jink/obstacle_tracks
 inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks_";
 /// ROS 2: /perception/object_recognition/tracking/objects
@@ -24,17 +31,32 @@ inline constexpr const char* kAutowareType = "autoware_perception_msgs::msg::dds
 /// `ned`; or Autoware's perception, in `map` alone.
 enum class TrackFormat { kJink, kAutoware };
 
+/// Which topic is read, whose messages of it, and where their frame is.
+struct TrackReaderOptions {
+  TrackFormat format = TrackFormat::kJink;
+  std::string name_space{};  ///< before the topic: "uav_1" means rt/uav_1/...; empty: none
+  /// Participants, by name, that are heard, and the number with which their messages are marked (TrackMessage::named);
+  /// empty: all are, unmarked.
+  std::map<std::string, std::size_t> writers{};
+  std::optional<frames::Geodetic> origin{};  ///< of the frame; none: the autopilot's local origin
+  /// The autopilot's, as it stands; asked where `origin` is given. Safe from any thread.
+  std::function<std::optional<frames::Geodetic>()> local_origin{};
+};
+/// The topic on the wire.
+[[nodiscard]] std::string track_topic(TrackFormat format, const std::string& name_space);
+
 /// Reads a topic of tracks best effort, volatile, keep last, so that a writer of any reliability and durability
 /// matches; by the node's transports. Messages are checked and converted to ENU on Fast DDS's thread and queued; when
 /// nobody polls, the oldest go. All functions are safe from any thread and never block.
 ///
-/// A message in another frame is refused whole; a track with non-finite or absurd values (TrackLimits) is left out of
-/// its message; a payload that is no message of the type is refused before anything is allocated for it.
+/// A message in another frame, of a writer that is not to be heard, or that cannot be placed yet, is refused whole; a
+/// track with non-finite or absurd values (TrackLimits) is left out of its message; a payload that is no message of the
+/// type is refused before anything is allocated for it.
 class DdsTrackReader final : public tracking::TrackSource {
  public:
   /// Returns at once; discovery goes on in the background. `node` and `clock` must outlive the reader.
   /// @throws std::runtime_error, one line, when Fast DDS cannot make it.
-  DdsTrackReader(DdsParticipant& node, const base::Clock& clock, TrackFormat format = TrackFormat::kJink);
+  DdsTrackReader(DdsParticipant& node, const base::Clock& clock, const TrackReaderOptions& options = {});
   /// Of jink's topic, on a node of its own. @throws as DdsParticipant's.
   DdsTrackReader(int domain, const base::Clock& clock);
   ~DdsTrackReader() override;
@@ -60,9 +82,9 @@ class DdsTrackReader final : public tracking::TrackSource {
 class DdsTrackWriter {
  public:
   /// Returns at once; discovery goes on in the background. `node` must outlive the writer. @throws as DdsTrackReader's.
-  explicit DdsTrackWriter(DdsParticipant& node);
+  explicit DdsTrackWriter(DdsParticipant& node, const std::string& name_space = {});
   /// On a node of its own. @throws as DdsParticipant's.
-  explicit DdsTrackWriter(int domain);
+  explicit DdsTrackWriter(int domain, const std::string& name_space = {}, const std::filesystem::path& security = {});
   ~DdsTrackWriter();
   DdsTrackWriter(const DdsTrackWriter&) = delete;
   DdsTrackWriter& operator=(const DdsTrackWriter&) = delete;

@@ -30,10 +30,11 @@ constexpr double kStampTolerance_s = 1.0;
 // A stamp of less is no system time: PX4 counts from its start where its agent does not synchronise the clocks.
 constexpr double kNoSystemTime_s = 1e9;
 
-/// What one payload is worth: its stamp (0: none), and what is wrong with it.
+/// What one payload is worth: its stamp (0: none), what is wrong with it, and how many obstacles it holds.
 struct Verdict {
   double stamp_unix_s = 0.0;
   std::string fault;
+  std::optional<std::size_t> obstacles{};  ///< none: it tells of none by its kind
 };
 using Judge = std::function<Verdict(const dds::Payload&)>;
 
@@ -45,14 +46,16 @@ class Probe {
         type_(type),
         judge_(std::move(judge)),
         reader_(node, topic_, type,
-                [this](const dds::Payload& payload, std::uint64_t writer) { take(payload, writer); }) {}
+                [this](const dds::Payload& payload, const dds::SampleWriter& writer) { take(payload, writer); }) {}
 
   struct Seen {
     int matched = 0;
     std::size_t writers = 0;  // heard
+    std::set<dds::ParticipantNames::Prefix> participants;
     std::uint64_t messages = 0;
     std::uint64_t faulty = 0;
     std::string fault;
+    std::optional<std::size_t> obstacles;  // the most at once
     double rate_hz = 0.0;
     std::optional<double> stamp_age_s;  // median
   };
@@ -74,13 +77,15 @@ class Probe {
   [[nodiscard]] const std::string& type() const { return type_; }
 
  private:
-  void take(const dds::Payload& payload, std::uint64_t writer) {
+  void take(const dds::Payload& payload, const dds::SampleWriter& writer) {
     const Verdict verdict = judge_(payload);
     const double now = dds::system_time();
     const std::scoped_lock lock(mutex_);
     if (seen_.messages++ == 0) first_ = now;
     last_ = now;
-    heard_.insert(writer);
+    heard_.insert(writer.identity);
+    seen_.participants.insert(writer.participant);
+    if (verdict.obstacles) seen_.obstacles = std::max(seen_.obstacles.value_or(0), *verdict.obstacles);
     if (!verdict.fault.empty()) {
       ++seen_.faulty;
       seen_.fault = verdict.fault;
@@ -101,12 +106,15 @@ class Probe {
   dds::PayloadReader reader_;  // last: its destruction ends the callbacks
 };
 
-Verdict judge_tracks(const std::optional<tracking::DecodedTracks>& message, bool ned_too) {
+Verdict judge_tracks(std::optional<tracking::DecodedTracks> message, const config::Mission& mission,
+                     config::TrackTopic topic) {
   if (!message) return {0.0, "payload of another layout"};
-  if (message->frame_id != "map" && !(ned_too && message->frame_id == "ned")) {
-    return {message->stamp_unix_s, "frame_id '" + cdr::printable(message->frame_id) + "'"};
-  }
-  return {message->stamp_unix_s, message->why};
+  const bool known = message->frame_id == "map" || (topic == config::TrackTopic::kJink && message->frame_id == "ned");
+  if (!known) return {message->stamp_unix_s, "frame_id '" + cdr::printable(message->frame_id) + "'"};
+  message->tracks.placed = mission.tracks.origins.at(static_cast<std::size_t>(topic)).has_value();
+  if (tracking::elsewhere(message->tracks, mission.geofence))
+    return {message->stamp_unix_s, "all obstacles are farther beside the geofence than that is wide"};
+  return {message->stamp_unix_s, message->why, message->tracks.tracks.size()};
 }
 
 Verdict judge_position(const dds::Payload& payload) {
@@ -163,14 +171,15 @@ bool near(const std::string& wanted, const std::string& other) {
 /// The domain as discovery shows it, and the words for what is not as it should be.
 class Inspector {
  public:
-  explicit Inspector(int domain)
-      : domain_(domain), node_(std::make_unique<dds::DdsParticipant::Impl>(domain, "jink doctor", &discovery_)) {}
+  explicit Inspector(const config::Mission& mission)
+      : domain_(mission.dds_domain),
+        node_(std::make_unique<dds::DdsParticipant::Impl>(domain_, "jink doctor", mission.dds_security, &discovery_)) {}
 
   dds::DdsParticipant& node() { return node_; }
 
   void settle() {
     endpoints_ = discovery_.endpoints();
-    participants_ = discovery_.participants();
+    participants_ = discovery_.all();
   }
 
   Check domain_check(bool needed) const {
@@ -197,6 +206,27 @@ class Inspector {
     return peerless_check(probe.topic(), probe.type(), true, probe.mismatch(), absent);
   }
 
+  /// Whom the mission names as writers, and who else writes.
+  void name_checks(const std::vector<config::TrackWriter>& wanted, config::TrackTopic topic, const Probe& probe,
+                   std::vector<Check>& checks) const {
+    std::set<std::string> heard;
+    for (const auto& participant : probe.seen().participants) heard.insert(discovery_.name_of(participant));
+    std::set<std::string> strangers = heard;
+    for (const config::TrackWriter& writer : wanted) {
+      if (writer.topic != topic) continue;
+      strangers.erase(writer.participant);
+      if (heard.contains(writer.participant)) continue;
+      checks.push_back(
+          {Check::Level::kMissing, probe.topic(), "nothing from '" + writer.participant + "'",
+           "start it, or correct tracks.writers: " +
+               (heard.empty() ? "nobody writes" : "who writes is " + joined({heard.begin(), heard.end()}))});
+    }
+    for (const std::string& stranger : strangers) {
+      checks.push_back({Check::Level::kWarning, probe.topic(), "also from '" + stranger + "', which is not heard",
+                        "name it in tracks.writers, or find out what it is"});
+    }
+  }
+
   /// A topic that the mission writes: who would read it.
   Check writer_check(const std::string& topic, const char* type, Check::Level absent) const {
     const auto fits = [&](const dds::DdsEndpoint& e) {
@@ -221,8 +251,12 @@ class Inspector {
       return {Check::Level::kFault, probe.topic(),
               finding + ", " + std::to_string(seen.faulty) + " of " + std::to_string(seen.messages) +
                   " messages not usable: " + seen.fault,
-              "the frame must be 'map' (ENU about the autopilot's local origin), values finite and sane, and both ends "
-              "built from the same message definition"};
+              "the frame must be 'map' (ENU about the autopilot's local origin, or tracks.origins says where), values "
+              "finite and sane, and both ends built from the same message definition"};
+    }
+    if (seen.obstacles == 0) {
+      return {Check::Level::kWarning, probe.topic(), finding + ", no obstacle in them",
+              "an empty scene and a blind tracker look the same: put something into its view"};
     }
     if (!seen.stamp_age_s) return {Check::Level::kOk, probe.topic(), finding + ", stamps are not system time", {}};
     finding += ", stamps " + number(*seen.stamp_age_s, "%.3f") + " s old";
@@ -311,20 +345,25 @@ void add_alternatives(std::vector<Check>& checks, std::vector<Check> alternative
 }  // namespace
 
 std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, const std::stop_token& stop) {
-  Inspector inspector(mission.dds_domain);
+  Inspector inspector(mission);
   std::vector<std::unique_ptr<Probe>> tracks;
   std::vector<std::unique_ptr<Probe>> positions;
   const auto add = [&](auto& probes, const std::string& topic, const char* type, Judge judge) {
     probes.push_back(std::make_unique<Probe>(inspector.node(), topic, type, std::move(judge)));
   };
   const auto px4_name = [&](const char* name) { return dds::px4_topic(mission.dds_namespace, name); };
+  const std::string& name_space = mission.tracks.name_space;
   if (mission.tracks.sources.jink) {
-    add(tracks, dds::kTracksTopic, dds::kTracksType,
-        [](const dds::Payload& payload) { return judge_tracks(cdr::decode_obstacle_tracks(payload), true); });
+    add(tracks, dds::track_topic(dds::TrackFormat::kJink, name_space), dds::kTracksType,
+        [&mission](const dds::Payload& payload) {
+          return judge_tracks(cdr::decode_obstacle_tracks(payload), mission, config::TrackTopic::kJink);
+        });
   }
   if (mission.tracks.sources.autoware) {
-    add(tracks, dds::kAutowareTopic, dds::kAutowareType,
-        [](const dds::Payload& payload) { return judge_tracks(cdr::decode_tracked_objects(payload), false); });
+    add(tracks, dds::track_topic(dds::TrackFormat::kAutoware, name_space), dds::kAutowareType,
+        [&mission](const dds::Payload& payload) {
+          return judge_tracks(cdr::decode_tracked_objects(payload), mission, config::TrackTopic::kAutoware);
+        });
   }
   if (mission.state == config::Transport::kDds) {
     add(positions, px4_name(dds::kLocalPositionTopicV1), dds::kLocalPositionType, judge_position);
@@ -350,6 +389,13 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
   for (Check& check : of_tracks) {
     if (check.level == Check::Level::kMissing && !mission.tracks.required) check.level = Check::Level::kWarning;
     checks.push_back(std::move(check));
+  }
+  if (!mission.tracks.writers.empty()) {
+    std::size_t probe = 0;
+    if (mission.tracks.sources.jink)
+      inspector.name_checks(mission.tracks.writers, config::TrackTopic::kJink, *tracks[probe++], checks);
+    if (mission.tracks.sources.autoware)
+      inspector.name_checks(mission.tracks.writers, config::TrackTopic::kAutoware, *tracks[probe], checks);
   }
   add_alternatives(checks, levels(positions));
   std::size_t writers = 0;

@@ -46,4 +46,17 @@ Vec3 LocalFrame::to_enu(const Geodetic& position) const {
   return result;
 }
 
+Eigen::Isometry3d between(const Geodetic& from, const Geodetic& to) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  if (from == to) return result;
+  constexpr double kArm = 1e4;  // m, so long that the conversions' rounding is nothing to it
+  const LocalFrame source(from);
+  const LocalFrame target(to);
+  const auto convert = [&](const Vec3& position) { return target.to_enu(source.to_geodetic(position)); };
+  result.translation() = convert(Vec3::Zero());
+  for (Eigen::Index i = 0; i < 3; ++i)
+    result.linear().col(i) = (convert(kArm * Vec3::Unit(i)) - result.translation()) / kArm;
+  return result;
+}
+
 }  // namespace jink::bridge::frames

@@ -4,6 +4,7 @@
 // alike. All are pure and safe from any thread; non-finite input gives non-finite output.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <GeographicLib/LocalCartesian.hpp>
 
 #include "bridge/frames/geodetic.hpp"
@@ -36,5 +37,9 @@ class LocalFrame {
   Geodetic origin_;
   GeographicLib::LocalCartesian tangent_plane_;
 };
+
+/// Positions in the tangent plane at `from` as those in the tangent plane at `to`; its rotation converts velocities and
+/// accelerations. Exact, as both are Cartesian.
+[[nodiscard]] Eigen::Isometry3d between(const Geodetic& from, const Geodetic& to);
 
 }  // namespace jink::bridge::frames

@@ -134,7 +134,8 @@ bool AdsbTracks::poll(tracking::TrackMessage& message) {
   status_.writers = static_cast<int>(senders_.size());
   const bool due = !aircraft_.empty() && now - last_message_ >= kRepeat_s;
   if (!fresh && !due) return false;
-  message = tracking::TrackMessage{{kWriter, now, 0.0}, {}, std::exchange(dropped_, 0), /*sends_when_empty=*/false};
+  message = tracking::TrackMessage{{kWriter, now, 0.0}, {}, std::exchange(dropped_, 0), /*placed=*/true};
+  message.sends_when_empty = false;
   for (const auto& [id, aircraft] : aircraft_) {
     const double age = std::max(0.0, now - aircraft.measured);
     Track track = aircraft.track;

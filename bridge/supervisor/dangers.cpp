@@ -12,8 +12,8 @@ std::string danger(const config::Mission& mission, const vehicle::FailsafeParame
   if (!endings.motors_cut) {
     const double loss = parameters.offboard_loss.value_or(0.0);
     if (loss == 6.0 || loss == 7.0) {
-      return "the autopilot cuts its motors when setpoints stop (COM_OBL_RC_ACT " + std::string(loss == 6.0 ? "6" : "7") +
-             "): set 5 (hold), or let the mission's endings accept motors_cut";
+      return "the autopilot cuts its motors when setpoints stop (COM_OBL_RC_ACT " +
+             std::string(loss == 6.0 ? "6" : "7") + "): set 5 (hold), or let the mission's endings accept motors_cut";
     }
     if (parameters.fence_breach == 4.0)
       return "the autopilot cuts its motors out of its geofence (GF_ACTION 4): set 2 (hold), or let the mission's "

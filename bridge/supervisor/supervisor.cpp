@@ -84,7 +84,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     return MissingPeer::kAutopilot;
   }
   if (!tracks) {
-    waiting_for_ = "obstacle tracks on DDS domain " + std::to_string(mission_.dds_domain);
+    const std::string& writer = in.flight.silent_writer;
+    waiting_for_ = "obstacle tracks " + (writer.empty() ? std::string() : "of '" + writer + "' ") + "on DDS domain " +
+                   std::to_string(mission_.dds_domain);
     return MissingPeer::kTracks;
   }
   if (!ready) {

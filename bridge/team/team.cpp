@@ -54,11 +54,8 @@ base::Stamped<TimedPath, base::Frame::kLocal> placed(const IntentMessage& messag
                                                      const frames::Geodetic& ours) {
   base::Stamped<TimedPath, base::Frame::kLocal> path{message.intent.path, stamp, message.received};
   for (TimedPoint& point : path.value) point.t += stamp;
-  const frames::Geodetic& theirs = *message.intent.origin;
-  if (ours == theirs) return path;
-  const frames::LocalFrame from(theirs);
-  const frames::LocalFrame to(ours);
-  for (TimedPoint& point : path.value) point.position = to.to_enu(from.to_geodetic(point.position));
+  const Eigen::Isometry3d to_ours = frames::between(*message.intent.origin, ours);
+  for (TimedPoint& point : path.value) point.position = to_ours * point.position;
   return path;
 }
 

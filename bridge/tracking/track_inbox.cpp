@@ -2,6 +2,7 @@
 #include "bridge/tracking/track_inbox.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace jink::bridge::tracking {
@@ -16,6 +17,15 @@ const char* refusal(const planner::base::Track& t) {
   if (!(t.position_sigma >= 0.0 && t.position_sigma <= L::kSigma)) return "position_sigma";
   if (!(t.velocity_sigma >= 0.0 && t.velocity_sigma <= L::kSigma)) return "velocity_sigma";
   return nullptr;
+}
+
+bool elsewhere(const TrackMessage& message, const planner::base::Box& fence) {
+  const double width = (fence.max - fence.min).head<2>().norm();
+  if (!std::isfinite(width) || message.tracks.empty() || message.placed) return false;
+  return std::all_of(message.tracks.begin(), message.tracks.end(), [&](const planner::base::Track& track) {
+    const Vec3 beside = (fence.min - track.position).cwiseMax(track.position - fence.max).cwiseMax(0.0);
+    return beside.head<2>().norm() > width + track.radius;
+  });
 }
 
 TrackValidator::TrackValidator(TrackMessage& message, std::size_t stated) : message_(message), stated_(stated) {
@@ -61,9 +71,9 @@ void TrackInbox::notify(base::Notifier& notifier) {
   notifier_ = &notifier;
 }
 
-void TrackInbox::refuse_frame(const std::string& why) {
+void TrackInbox::refuse(const std::string& why) {
   const std::scoped_lock lock(mutex_);
-  ++status_.bad_frames;
+  ++status_.refused;
   status_.last_refusal = why;
 }
 

@@ -29,6 +29,10 @@ struct TrackLimits {
 /// every source and before the planner.
 [[nodiscard]] const char* refusal(const planner::base::Track& track);
 
+/// Whether all tracks of a message, and there are some, are farther beside the fence than it is wide: they are given in
+/// another frame, or concern nobody here. Never of a message that is `placed`; heights do not count.
+[[nodiscard]] bool elsewhere(const TrackMessage& message, const planner::base::Box& fence);
+
 /// Takes the tracks of one message in, one by one; what is non-finite, absurd or beyond kTracksPerMessage stays out and
 /// is counted in message.dropped. Pure.
 class TrackValidator {
@@ -61,8 +65,8 @@ class TrackInbox {
  public:
   /// `why`: what TrackValidator::why() said.
   void put(TrackMessage message, const std::string& why);
-  /// A message refused whole for its frame_id.
-  void refuse_frame(const std::string& why);
+  /// A message refused whole.
+  void refuse(const std::string& why);
 
   bool poll(TrackMessage& message);
   /// Notified from now on by each message; outlives the inbox.

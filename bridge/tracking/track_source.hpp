@@ -3,6 +3,7 @@
 // sim/flight/closed_loop.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace jink::bridge::tracking {
 struct TrackMessage : base::Reception<base::Frame::kLocal> {
   std::vector<planner::base::Track> tracks;
   std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
+  bool placed = false;        ///< its frame's place is known: it has an origin, or is the vehicle's
+  std::size_t named = 0;      ///< i + 1: of the writer i that the mission names; 0: it names none
   bool sends_when_empty =
       true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
 };
@@ -25,7 +28,7 @@ struct TrackMessage : base::Reception<base::Frame::kLocal> {
 struct TrackSourceStatus {
   int writers = 0;                   ///< matched now
   std::uint64_t messages = 0;        ///< accepted
-  std::uint64_t bad_frames = 0;      ///< messages refused for their frame_id
+  std::uint64_t refused = 0;         ///< messages: for their frame, or for who wrote them
   std::uint64_t dropped_tracks = 0;  ///< tracks left out for their values
   std::uint64_t malformed = 0;       ///< payloads that could not be decoded
   std::string last_refusal;          ///< why, of the newest refusal

@@ -22,7 +22,7 @@ TrackSourceStatus TrackSources::status() const {
     const TrackSourceStatus status = each.source->status();
     sum.writers += status.writers;
     sum.messages += status.messages;
-    sum.bad_frames += status.bad_frames;
+    sum.refused += status.refused;
     sum.dropped_tracks += status.dropped_tracks;
     sum.malformed += status.malformed;
     if (status.last_refusal != each.refusal) last_refusal_ = each.refusal = status.last_refusal;

@@ -75,7 +75,9 @@ void TrackTable::ingest(const TrackMessage& message) {
   if (message.sends_when_empty)
     newest_message_ = std::max(newest_message_.value_or(message.received), message.received);
   Writer& writer = writers_[message.writer];
+  if (!writer.first) writer.first = message.received;
   writer.believed = message.received;
+  writer.named = message.named;
   writer.sends_when_empty = message.sends_when_empty;
   for (const planner::base::Track& track : message.tracks) {
     if (refusal(track) != nullptr) {
@@ -184,11 +186,28 @@ void TrackTable::find_self(double now, const Vec3& position, const Vec3& velocit
   }
 }
 
-int TrackTable::live_writers(double now, double timeout_s) const {
-  return static_cast<int>(std::count_if(writers_.begin(), writers_.end(), [&](const auto& item) {
-    const Writer& writer = item.second;
-    return writer.sends_when_empty && writer.believed && now - *writer.believed <= timeout_s;
-  }));
+std::optional<double> TrackTable::newest_of(std::size_t named) const {
+  std::optional<double> newest;
+  for (const auto& [identity, writer] : writers_) {
+    if (writer.named == named && writer.believed)
+      newest = std::max(newest.value_or(*writer.believed), *writer.believed);
+  }
+  return newest;
+}
+
+int TrackTable::lost_writers(double now, double timeout_s, double since) const {
+  std::vector<std::pair<double, int>> changes;  // when somebody came (-1) or went (1)
+  for (const auto& [identity, writer] : writers_) {
+    if (!writer.sends_when_empty || !writer.believed) continue;
+    const bool speaks = now - *writer.believed <= timeout_s;
+    const bool established = *writer.believed - *writer.first >= kEstablished;
+    if (speaks || established) changes.emplace_back(*writer.first, -1);
+    if (!speaks && established && *writer.believed >= since) changes.emplace_back(*writer.believed, 1);
+  }
+  std::sort(changes.begin(), changes.end());
+  int lost = 0;
+  for (const auto& [when, change] : changes) lost = std::max(0, lost + change);
+  return lost;
 }
 
 std::vector<planner::base::Track> TrackTable::predict(double now, double trust,

@@ -67,9 +67,14 @@ class TrackTable {
   [[nodiscard]] const TrackTableCounts& counts() const { return counts_; }
   /// Living tracks that are taken for the vehicle itself.
   [[nodiscard]] int own_tracks() const { return own_tracks_; }
-  /// Writers that send when they see nothing and whose newest believed message is no older than `timeout_s`.
-  [[nodiscard]] int live_writers(double now, double timeout_s) const;
 
+  /// Reception of the newest message of the mission's writer `named` that was taken in; none: none yet.
+  [[nodiscard]] std::optional<double> newest_of(std::size_t named) const;
+  /// Writers that watched for kEstablished s and more, fell silent since `since`, and in whose place none has come:
+  /// none that speaks, or did for so long, whose first word was after their last.
+  [[nodiscard]] int lost_writers(double now, double timeout_s, double since) const;
+
+  static constexpr double kEstablished = 1.0;
   static constexpr std::size_t kMost = 20000;       ///< living tracks
   static constexpr std::size_t kMostLearned = 400;  ///< tracks whose ways are learned at a time
   static constexpr double kLearned = 40.0;          ///< m, from the vehicle's place, of these
@@ -96,7 +101,9 @@ class TrackTable {
     ClockOffsetEstimator clock;
     std::vector<Seen> last;  // what the newest message that was taken in held
     double received = 0.0;
-    std::optional<double> believed;  // reception of the newest message that was taken in
+    std::optional<double> first;     // reception of the first message that was taken in
+    std::optional<double> believed;  // likewise of the newest
+    std::size_t named = 0;
     bool sends_when_empty = true;
   };
   std::optional<double> stamp_of(const TrackMessage& message);

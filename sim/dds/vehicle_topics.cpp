@@ -180,7 +180,7 @@ class VehicleTopics::Impl {
   // Both types are of fixed size, so the generated code may decode them.
   template <typename Wire>
   bridge::dds::PayloadReader::Take take_into(Newest<Wire>& newest) {
-    return [this, &newest](const bridge::dds::Payload& payload, std::uint64_t) {
+    return [this, &newest](const bridge::dds::Payload& payload, const bridge::dds::SampleWriter&) {
       Wire message;
       const bool whole = bridge::cdr::decode(payload, [&](bridge::cdr::CdrInput& input) {
         message.deserialize(input.cdr());

@@ -126,6 +126,51 @@ TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
   EXPECT_EQ(m.tracks.sensed_from, SensedFrom::kVehicle);
 }
 
+TEST(LoadMission, ReadsWhoseTracksAreHeardAndWhereTheirFrameIs) {
+  const Folder folder;
+  const auto load = [&](const std::string& tracks) {
+    std::string text = kValidMission;
+    text.replace(text.find("coast_s: 0.5"), 12, tracks);
+    return load_mission(folder.write("m.yaml", text)).tracks;
+  };
+  TrackPolicy tracks = load("namespace: uav_1/sense, writers: {jink: [front, rear], autoware: [/perception]}");
+  EXPECT_EQ(tracks.name_space, "uav_1/sense");
+  ASSERT_EQ(tracks.writers.size(), 3U);
+  EXPECT_EQ(tracks.writers[1].participant, "rear");
+  EXPECT_EQ(tracks.writers[1].topic, TrackTopic::kJink);
+  EXPECT_EQ(tracks.writers[2].participant, "/perception");
+  EXPECT_EQ(tracks.writers[2].topic, TrackTopic::kAutoware);
+  tracks = load("writers: {jink: [front]}, origins: {jink: [47.4, 8.5, 488]}");
+  EXPECT_FALSE(tracks.sources.autoware);  // names nobody, so nobody's are read
+  EXPECT_TRUE(tracks.sources.jink && tracks.sources.adsb);
+  EXPECT_FALSE(tracks.origins[1]);
+  ASSERT_TRUE(tracks.origins[0]);
+  EXPECT_EQ(tracks.origins[0]->latitude_deg, 47.4);
+  EXPECT_EQ(tracks.origins[0]->longitude_deg, 8.5);
+  EXPECT_EQ(tracks.origins[0]->altitude_m, 488.0);
+}
+
+TEST(LoadMission, FindsTheFolderOfKeysBesideTheMission) {
+  const Folder folder;
+  std::string text = kValidMission;
+  text.replace(text.find("domain: 7"), 9, "domain: 7, security: keys");
+  std::filesystem::create_directory(folder.path() / "keys");
+  for (const char* name : {"identity_ca.cert.pem", "cert.pem", "key.pem", "permissions_ca.cert.pem", "governance.p7s",
+                           "permissions.p7s"}) {
+    try {
+      static_cast<void>(load_mission(folder.write("m.yaml", text)));
+      ADD_FAILURE() << "without " << name;
+    } catch (const ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find("key 'dds.security': value 'keys' holds no file " + std::string(name)),
+                std::string::npos)
+          << error.what();
+    }
+    folder.write("keys/" + std::string(name), "x");
+  }
+  EXPECT_TRUE(
+      std::filesystem::equivalent(load_mission(folder.write("m.yaml", text)).dds_security, folder.path() / "keys"));
+}
+
 TEST(LoadMission, ReadsHowFlightsEndByCause) {
   const Folder folder;
   const Endings defaults = load_mission(folder.write("d.yaml", kValidMission)).endings;
@@ -215,6 +260,13 @@ TEST(LoadMission, RefusesBadValues) {
       {"time_limit: 120", "endings: {battery: hold}", 12, "endings.battery", "hold", "accept: [hover_until_empty]"},
       {"time_limit: 120", "endings: {batery: land}", 12, "endings.batery", "", "did you mean 'battery'?"},
       {"time_limit: 120", "endings: {accept: [all]}", 12, "endings.accept[0]", "all", "is not one of motors_cut"},
+      {"coast_s: 0.5", "namespace: /uav", 11, "tracks.namespace", "/uav", "is not a namespace"},
+      {"coast_s: 0.5", "writers: {jink: []}", 11, "tracks.writers.jink", "[]", "elements in [1, 100]"},
+      {"coast_s: 0.5", "writers: {adsb: [a]}", 11, "tracks.writers.adsb", "", "jink, autoware"},
+      {"coast_s: 0.5", "sources: [jink, autoware], writers: {jink: [a]}", 11, "tracks.writers", "", "have 'autoware'"},
+      {"coast_s: 0.5", "sources: [jink], writers: {autoware: [a]}", 11, "tracks.writers", "", "have 'jink'"},
+      {"coast_s: 0.5", "origins: {jink: [91, 0, 0]}", 11, "tracks.origins.jink[0]", "91", "is not in [-90, 90]"},
+      {"domain: 7", "domain: 7, security: nowhere", 10, "dds.security", "nowhere", "holds no file identity_ca"},
       {"time_limit: 120", "state: ros", 12, "state", "ros", "is not one of mavlink, dds"},
       {"required: false", "required: maybe", 11, "tracks.required", "maybe", "is not true or false"},
       {"timeout_s: 1.5", "timeout_s: 0", 11, "tracks.timeout_s", "0", "is not in (0, 60]"},

@@ -100,13 +100,30 @@ void run_loop(bridge::companion::Companion& companion, bridge::mavsdk::MavsdkLin
   }
 }
 
+bridge::dds::TrackReaderOptions track_options(const config::Mission& mission, bridge::mavsdk::MavsdkLink& mavlink,
+                                              config::TrackTopic topic) {
+  const config::TrackPolicy& tracks = mission.tracks;
+  bridge::dds::TrackReaderOptions options;
+  options.format =
+      topic == config::TrackTopic::kAutoware ? bridge::dds::TrackFormat::kAutoware : bridge::dds::TrackFormat::kJink;
+  options.name_space = tracks.name_space;
+  for (std::size_t i = 0; i < tracks.writers.size(); ++i) {
+    if (tracks.writers[i].topic == topic) options.writers[tracks.writers[i].participant] = i + 1;
+  }
+  if (const auto& origin = tracks.origins.at(static_cast<std::size_t>(topic)))
+    options.origin = {origin->latitude_deg, origin->longitude_deg, origin->altitude_m};
+  options.local_origin = [&mavlink] { return mavlink.state().origin; };
+  return options;
+}
+
 /// All that a mission's flight talks to but the autopilot's MAVLink.
 struct Transports {
   Transports(const config::Mission& mission, bridge::mavsdk::MavsdkLink& mavlink, const bridge::base::Clock& clock)
-      : node(mission.dds_domain), vehicle(&mavlink) {
+      : node(mission.dds_domain, "jink", mission.dds_security), vehicle(&mavlink) {
     const config::TrackSources& sources = mission.tracks.sources;
-    if (sources.jink) tracks.add(jink.emplace(node, clock));
-    if (sources.autoware) tracks.add(autoware.emplace(node, clock, bridge::dds::TrackFormat::kAutoware));
+    if (sources.jink) tracks.add(jink.emplace(node, clock, track_options(mission, mavlink, config::TrackTopic::kJink)));
+    if (sources.autoware)
+      tracks.add(autoware.emplace(node, clock, track_options(mission, mavlink, config::TrackTopic::kAutoware)));
     if (sources.adsb) {
       const auto reports = [&mavlink](bridge::mavlink::AdsbReport& report) { return mavlink.next_adsb(report); };
       const auto origin = [&mavlink] { return mavlink.state().origin; };

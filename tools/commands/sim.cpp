@@ -12,6 +12,7 @@
 
 #include "bridge/base/clock.hpp"
 #include "bridge/dds/tracks.hpp"
+#include "config/mission.hpp"
 #include "config/scenario.hpp"
 #include "sim/dds/vehicle_topics.hpp"
 #include "sim/flight/simulator.hpp"
@@ -38,6 +39,8 @@ struct SimOptions {
   double speed = 1.0;
   std::optional<double> boot_clock;
   double duration = 0.0;  // of simulated time; 0: until Ctrl-C
+  std::string tracks_namespace;
+  std::string dds_security;
   int domain = 0;
   int instance = 0;
   bool no_vehicle = false;
@@ -179,7 +182,8 @@ void run_until_the_end(sim::flight::Simulator& simulator, const SimOptions& opti
 /// What PX4's uXRCE-DDS agents would publish and take, one for each vehicle; the first without a namespace, as PX4's.
 class DdsSides {
  public:
-  DdsSides(const SimOptions& options, std::size_t vehicles) : node_(options.domain, "jink sim"), jumps_(vehicles) {
+  DdsSides(const SimOptions& options, std::size_t vehicles)
+      : node_(options.domain, "jink sim", options.dds_security), jumps_(vehicles) {
     for (std::size_t k = 0; k < vehicles; ++k) {
       const std::size_t instance = static_cast<std::size_t>(options.instance) + k;
       sides_.push_back(std::make_unique<sim::dds::VehicleTopics>(
@@ -221,9 +225,11 @@ nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const
 
 void introduce(const config::Scenario& scenario, const SimOptions& options, cli::BackgroundPrinter& printer) {
   printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
-                           options.no_tracks
-                               ? ", not published"
-                               : fmt::format(" as {} on DDS domain {}", bridge::dds::kTracksTopic, options.domain),
+                           options.no_tracks ? ", not published"
+                                             : fmt::format(" as {} on DDS domain {}",
+                                                           bridge::dds::track_topic(bridge::dds::TrackFormat::kJink,
+                                                                                    options.tracks_namespace),
+                                                           options.domain),
                            options.common.seed));
   const int vehicles = options.no_vehicle ? 0 : 1 + static_cast<int>(scenario.vehicles.size());
   for (int i = options.instance; i < options.instance + vehicles; ++i) {
@@ -237,6 +243,16 @@ void introduce(const config::Scenario& scenario, const SimOptions& options, cli:
   if (options.no_vehicle && !options.common.json.empty())
     printer.line("warning: --json: nothing is written, without a vehicle there is no flight to sum up");
   printer.line("press Ctrl-C to stop");
+}
+
+void check_dds(const SimOptions& options) {
+  if (!options.tracks_namespace.empty() && !config::is_namespace(options.tracks_namespace)) {
+    throw cli::UsageError("--tracks-namespace " + options.tracks_namespace +
+                          ": expected names of letters, digits and _, parted by /");
+  }
+  if (options.dds_security.empty()) return;
+  if (const std::string_view missing = config::missing_security_file(options.dds_security); !missing.empty())
+    throw cli::UsageError("--dds-security " + options.dds_security + ": holds no file " + std::string(missing));
 }
 
 void check_instances(const config::Scenario& scenario, const SimOptions& options) {
@@ -264,12 +280,15 @@ int run(const SimOptions& options) {
   const config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   check_instances(scenario, options);
+  check_dds(options);
   cli::catch_signals();
   std::unique_ptr<log::FlightLog> log;
   std::optional<cli::BackgroundPrinter> background(printer);
   LogSink log_sink(*background);
   std::unique_ptr<bridge::dds::DdsTrackWriter> writer;  // none: somebody else tells of the obstacles
-  if (!options.no_tracks) writer = std::make_unique<bridge::dds::DdsTrackWriter>(options.domain);
+  if (!options.no_tracks)
+    writer =
+        std::make_unique<bridge::dds::DdsTrackWriter>(options.domain, options.tracks_namespace, options.dds_security);
   const auto publish = [&](const sim::world::TrackMessage& message, double now) {
     const double age = (now - message.stamp) / options.speed;
     return !writer || writer->publish(message.tracks, unix_now() - age + message.clock_offset);
@@ -341,6 +360,10 @@ cli::Subcommand add_sim(const cli::Parser& jink) {
   app.add_option("--domain", options->domain, "DDS domain, 0 to 232")
       .transform(cli::whole_number(0, 232))
       .show_default();
+  app.add_option("--tracks-namespace", options->tracks_namespace,
+                 "before the topic of the obstacles: uav_1 means rt/uav_1/jink/obstacle_tracks");
+  app.add_option("--dds-security", options->dds_security,
+                 "folder with the keys of a DDS enclave, as SROS 2 lays them out");
   app.add_option("--instance", options->instance,
                  "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9; further vehicles take N+1 and so on")
       .transform(cli::whole_number(0, 9))

@@ -276,6 +276,51 @@ TEST(Companion, ReportsRefusedTracksOnceASecond) {
   EXPECT_EQ(loop.recorder.count("tracks_refused"), settled);
 }
 
+// A metric grid's coordinates, say: what cannot be right satisfies nobody.
+TEST(Companion, TracksOfAnotherFrameAreRefusedAndNotFlownWith) {
+  Loop loop;
+  planner::base::Track far;
+  far.position = {465'000, 5'250'000, 3};
+  far.radius = 0.5;
+  loop.seen = {far};
+  loop.run(5.0);
+  EXPECT_TRUE(loop.link.requests.empty());
+  EXPECT_NE(loop.companion.supervisor().waiting_for().find("obstacle tracks"), std::string::npos);
+  EXPECT_GE(loop.recorder.count("tracks_refused"), 1);
+  EXPECT_NE(loop.recorder.last("tracks_refused").find("another frame"), std::string::npos);
+  far.position = {20, 8, 3};
+  loop.seen.push_back(far);  // one that can be right
+  loop.run(1.0);
+  EXPECT_FALSE(loop.link.requests.empty());
+}
+
+TEST(Companion, WaitsForTheWritersThatTheMissionNamesAndStopsWithoutOne) {
+  config::Mission m = Loop::mission();
+  m.tracks.writers = {{config::TrackTopic::kJink, "front"}, {config::TrackTopic::kJink, "rear"}};
+  Loop loop(m);
+  loop.airborne().tracks = false;
+  bool rear = false;
+  const auto fly = [&](double seconds) {
+    for (const double end = loop.now + seconds; loop.now < end;) {
+      for (const std::uint64_t writer : {1U, 2U}) {
+        if (writer == 2 && !rear) continue;
+        tracking::TrackMessage message{{writer, loop.now, 0.0}, {}, 0};
+        message.named = writer;
+        loop.source.messages.push_back(message);
+      }
+      loop.turn();
+    }
+  };
+  fly(2.0);
+  EXPECT_EQ(loop.companion.supervisor().waiting_for(), "obstacle tracks of 'rear' on DDS domain 0");
+  rear = true;
+  fly(2.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
+  rear = false;
+  fly(1.5);
+  EXPECT_EQ(loop.recorder.last("hazard"), "the obstacle tracks are stale");
+}
+
 TEST(Companion, SaysThatAWritersClockIsOff) {
   Loop loop;
   loop.tracks = false;

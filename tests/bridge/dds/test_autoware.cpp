@@ -194,7 +194,7 @@ TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
   const int domain = own_domain();
   DdsParticipant node(domain);
   DdsParticipant peer(domain);
-  DdsTrackReader reader(node, clock, TrackFormat::kAutoware);
+  DdsTrackReader reader(node, clock, {.format = TrackFormat::kAutoware});
   PayloadWriter writer(peer, kAutowareTopic, kAutowareType, {.reliable = true});
   ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
   const double before = clock.now();
@@ -205,7 +205,7 @@ TEST(DdsAutowareReader, TakesReliableWritersAndRefusesOtherFrames) {
   EXPECT_GE(message.received, before);
   EXPECT_NEAR(message.stamp_age, system_time() - 100.5, 60.0);
   ASSERT_TRUE(writer.write(payload_of({object()}, "base_link")));
-  ASSERT_TRUE(eventually([&] { return reader.status().bad_frames == 1; }));
+  ASSERT_TRUE(eventually([&] { return reader.status().refused == 1; }));
   EXPECT_EQ(reader.status().last_refusal, "TrackedObjects: frame_id 'base_link' is not 'map'");
   ASSERT_TRUE(writer.write(Payload{0, 1, 0, 0, 1, 2, 3}));
   ASSERT_TRUE(eventually([&] { return reader.malformed() == 1; }));
@@ -219,12 +219,12 @@ TEST(DdsAutowareReader, TakesAnotherVendorsWriter) {
   const SteadyClock clock;
   const int domain = own_domain();
   DdsParticipant node(domain);
-  DdsTrackReader reader(node, clock, TrackFormat::kAutoware);
+  DdsTrackReader reader(node, clock, {.format = TrackFormat::kAutoware});
   ChildProcess peer({python(), script("cyclone_autoware.py"), "--domain", std::to_string(domain)});
   TrackMessage message;
   ASSERT_TRUE(eventually([&] { return reader.poll(message); }, std::chrono::seconds(60)));
   ASSERT_EQ(message.tracks.size(), 2U);
-  EXPECT_EQ(reader.malformed() + reader.status().bad_frames + reader.status().dropped_tracks, 0U);
+  EXPECT_EQ(reader.malformed() + reader.status().refused + reader.status().dropped_tracks, 0U);
   EXPECT_LT(std::abs(message.stamp_age), 60.0);
   const Track& box = message.tracks[0];
   EXPECT_EQ(box.position, Vec3(1, 2, 3));

@@ -410,7 +410,7 @@ TEST_F(Px4Dds, SendsSetpointsAsPx4TakesThem) {
   px4_msgs::msg::dds_::TrajectorySetpoint_ wire;
   px4_msgs::msg::dds_::OffboardControlMode_ mode;
   const auto into = [&taken](auto& message) {
-    return [&](const Payload& payload, std::uint64_t) {
+    return [&](const Payload& payload, const SampleWriter&) {
       const bool whole = cdr::decode(payload, [&](auto& in) { return message.deserialize(in.cdr()), true; });
       if (whole) ++taken;
     };

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -102,10 +104,10 @@ TEST_F(DdsTracks, TurnsTheNedFrameIntoEnu) {
 TEST_F(DdsTracks, RefusesOtherFramesWholeAndSaysWhich) {
   match();
   ASSERT_TRUE(writer_.publish(std::vector{track(1)}, unix_now(), "base_link\n"));
-  ASSERT_TRUE(eventually([&] { return reader_.status().bad_frames == 1; }));
+  ASSERT_TRUE(eventually([&] { return reader_.status().refused == 1; }));
   EXPECT_NE(reader_.status().last_refusal.find("'base_link?'"), std::string::npos) << reader_.status().last_refusal;
   ASSERT_TRUE(writer_.publish(std::vector{track(2)}, unix_now(), ""));
-  ASSERT_TRUE(eventually([&] { return reader_.status().bad_frames == 2; }));
+  ASSERT_TRUE(eventually([&] { return reader_.status().refused == 2; }));
   ASSERT_TRUE(writer_.publish(std::vector{track(3)}, unix_now(), "map"));
   EXPECT_EQ(next().tracks.at(0).id, 3U);
   EXPECT_EQ(reader_.status().messages, 1U);
@@ -321,11 +323,78 @@ TEST_P(OtherVendor, ReachesTheReader) {
   EXPECT_EQ(later.tracks[0].velocity_sigma, 0.25);
   EXPECT_EQ(later.tracks[1].id, 2U);
   EXPECT_EQ(later.tracks[1].position, Vec3(2, 9, 2));
-  EXPECT_EQ(reader.status().dropped_tracks + reader.status().bad_frames + reader.malformed(), 0U);
+  EXPECT_EQ(reader.status().dropped_tracks + reader.status().refused + reader.malformed(), 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(CycloneDds, OtherVendor, ::testing::Values(false, true),
                          [](const auto& parameter) { return parameter.param ? "Reliable" : "BestEffort"; });
+
+TEST(DdsTrackReader, HearsWhomItIsToHearAndMarksThem) {
+  const SteadyClock clock;
+  const int domain = own_domain();
+  DdsParticipant node(domain);
+  DdsParticipant front(domain, "front");
+  DdsParticipant stranger(domain, "stranger");
+  DdsTrackReader reader(node, clock, {.writers = {{"front", 2}}});
+  DdsTrackWriter good(front);
+  DdsTrackWriter bad(stranger);
+  ASSERT_TRUE(eventually([&] { return reader.status().writers == 2 && good.readers() == 1 && bad.readers() == 1; }));
+  ASSERT_TRUE(bad.publish({}, unix_now()));
+  ASSERT_TRUE(eventually([&] { return reader.status().refused == 1; }));
+  EXPECT_EQ(reader.status().last_refusal, "tracks of 'stranger', whom the mission does not name");
+  ASSERT_TRUE(good.publish(std::vector{track(7)}, unix_now()));
+  TrackMessage message;
+  ASSERT_TRUE(eventually([&] { return reader.poll(message); }));
+  EXPECT_EQ(message.named, 2U);
+  EXPECT_EQ(reader.status().messages, 1U);
+}
+
+TEST(DdsTrackReader, ReadsItsNamespaceAlone) {
+  EXPECT_EQ(track_topic(TrackFormat::kJink, "uav_1"), "rt/uav_1/jink/obstacle_tracks");
+  EXPECT_EQ(track_topic(TrackFormat::kAutoware, "a/b"), "rt/a/b/perception/object_recognition/tracking/objects");
+  const SteadyClock clock;
+  const int domain = own_domain();
+  DdsParticipant node(domain);
+  DdsTrackReader reader(node, clock, {.name_space = "uav_1"});
+  DdsTrackWriter ours(domain, "uav_1");
+  DdsTrackWriter theirs(domain, "uav_2");
+  DdsTrackWriter nobodys(domain);
+  ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && ours.readers() == 1; }));
+  EXPECT_EQ(theirs.readers() + nobodys.readers(), 0);
+  ASSERT_TRUE(ours.publish(std::vector{track(7)}, unix_now()));
+  TrackMessage message;
+  ASSERT_TRUE(eventually([&] { return reader.poll(message); }));
+}
+
+TEST(DdsTrackReader, PlacesTracksThatHaveAnOriginOfTheirOwn) {
+  const SteadyClock clock;
+  const int domain = own_domain();
+  DdsParticipant node(domain);
+  const frames::Geodetic map{47.40, 8.50, 430.0};
+  std::mutex mutex;
+  std::optional<frames::Geodetic> local;
+  DdsTrackReader reader(node, clock, {.origin = map, .local_origin = [&] {
+                                        const std::scoped_lock lock(mutex);
+                                        return local;
+                                      }});
+  DdsTrackWriter writer(domain);
+  ASSERT_TRUE(eventually([&] { return reader.status().writers == 1 && writer.readers() == 1; }));
+  ASSERT_TRUE(writer.publish(std::vector{track(7)}, unix_now()));
+  ASSERT_TRUE(eventually([&] { return reader.status().refused == 1; }));  // where that is nobody knows
+  {
+    const std::scoped_lock lock(mutex);
+    local = frames::Geodetic{47.41, 8.50, 400.0};
+  }
+  ASSERT_TRUE(writer.publish(std::vector{track(7)}, unix_now()));
+  TrackMessage message;
+  ASSERT_TRUE(eventually([&] { return reader.poll(message); }));
+  EXPECT_TRUE(message.placed);
+  const Vec3 p = message.tracks.at(0).position;
+  EXPECT_NEAR(p.x(), 1.0, 0.01);
+  EXPECT_NEAR(p.y(), 2.0 - 1111.9, 1.0);  // a hundredth of a degree to the north
+  EXPECT_NEAR(p.z(), 33.0, 0.2);
+  EXPECT_NEAR(message.tracks[0].velocity.x(), 0.5, 1e-3);
+}
 
 }  // namespace
 }  // namespace jink::bridge::dds

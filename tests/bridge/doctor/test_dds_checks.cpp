@@ -18,6 +18,7 @@
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/px4_link.hpp"
 #include "bridge/dds/tracks.hpp"
+#include "bridge/doctor/vehicle_checks.hpp"
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
@@ -232,6 +233,37 @@ TEST(QosMismatches, AreThoseOfReadersThatAskForMoreThanIsOffered) {
   theirs = DdsEndpoint{};
   theirs.partitions = {"a", ""};
   EXPECT_TRUE(dds::qos_mismatches(theirs).empty());
+}
+
+TEST(DdsDoctor, SaysWhomTheMissionMissesAndWhoElseWrites) {
+  Mission mission = tracks_mission(own_domain());
+  mission.tracks.writers = {{config::TrackTopic::kJink, "front"}, {config::TrackTopic::kJink, "rear"}};
+  DdsParticipant front(mission.dds_domain, "front");
+  DdsParticipant other(mission.dds_domain, "other");
+  DdsTrackWriter first(front);
+  DdsTrackWriter second(other);
+  std::string all;
+  for (const Check& check : inspect(mission, [&] { (void)(first.publish({}, 1.8e9) && second.publish({}, 1.8e9)); }))
+    all += std::string(to_string(check.level)) + ": " + check.finding + "\n";
+  EXPECT_NE(all.find("missing: nothing from 'rear'"), std::string::npos) << all;
+  EXPECT_NE(all.find("warning: also from 'other', which is not heard"), std::string::npos) << all;
+  EXPECT_EQ(all.find("nothing from 'front'"), std::string::npos) << all;
+  EXPECT_NE(all.find("no obstacle in them"), std::string::npos) << all;
+}
+
+TEST(DdsDoctor, SaysThatObstaclesAreGivenInAnotherFrame) {
+  Mission mission = tracks_mission(own_domain());
+  mission.geofence = {{-50, -50, 0}, {50, 50, 20}};
+  DdsTrackWriter writer(mission.dds_domain);
+  planner::base::Track track;
+  track.radius = 0.5;
+  track.position = {465'000, 5'250'000, 3};
+  const auto act = [&] { (void)writer.publish(std::vector{track}, dds::system_time()); };
+  const Check check = find(inspect(mission, act), dds::kTracksTopic);
+  EXPECT_EQ(check.level, Check::Level::kFault);
+  EXPECT_NE(check.finding.find("farther beside the geofence"), std::string::npos) << check.finding;
+  mission.tracks.origins[0] = config::GeodeticOrigin{};
+  EXPECT_EQ(find(inspect(mission, act), dds::kTracksTopic).level, Check::Level::kOk);
 }
 
 }  // namespace

@@ -78,5 +78,19 @@ TEST(Frames, ThereAndBackIsTheSame) {
   }
 }
 
+// Two tangent planes some kilometres apart are turned against each other, and the earth falls away.
+TEST(Frames, BetweenTwoOriginsPositionsAreTheSamePlaces) {
+  const Geodetic here{47.3977, 8.5456, 488.0};
+  const Geodetic there{47.4500, 8.6500, 430.0};
+  const Eigen::Isometry3d to_there = between(here, there);
+  for (const Vec3& p : {Vec3(0, 0, 0), Vec3(120, -40, 15), Vec3(-9000, 4000, 900)}) {
+    const Vec3 exact = LocalFrame(there).to_enu(LocalFrame(here).to_geodetic(p));
+    EXPECT_LT((to_there * p - exact).norm(), 1e-6);
+  }
+  EXPECT_LT((to_there.linear() * to_there.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+  EXPECT_LT(((between(there, here) * to_there).matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-6);
+  EXPECT_TRUE(between(here, here).matrix().isIdentity(0.0));
+}
+
 }  // namespace
 }  // namespace jink::bridge::frames

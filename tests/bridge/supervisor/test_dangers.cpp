@@ -37,7 +37,8 @@ TEST(Dangers, AReturnIsToStayUnderTheFencesTop) {
   EXPECT_EQ(danger(m, {0.0, {}, 20.0}), "");
   EXPECT_EQ(danger(m, {0.0, {}, {}}), "");  // not told: the flight says so
   const std::string why = danger(m, {0.0, {}, 20.5});
-  EXPECT_NE(why.find("RETURN climbs to 20.50 m (RTL_RETURN_ALT), the geofence ends at 20.00 m"), std::string::npos) << why;
+  EXPECT_NE(why.find("RETURN climbs to 20.50 m (RTL_RETURN_ALT), the geofence ends at 20.00 m"), std::string::npos)
+      << why;
   m.geofence = {};
   EXPECT_EQ(danger(m, {0.0, {}, 100.0}), "");
   m = mission();

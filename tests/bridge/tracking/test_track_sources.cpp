@@ -69,12 +69,12 @@ TEST(TrackSources, SumsTheStatusAndTellsTheNewestRefusal) {
   TrackSources sources;
   sources.add(first);
   sources.add(second);
-  first.status_now = {.writers = 1, .messages = 10, .bad_frames = 2, .dropped_tracks = 3, .last_refusal = "a"};
-  second.status_now = {.writers = 2, .messages = 20, .bad_frames = 4, .dropped_tracks = 6, .last_refusal = ""};
+  first.status_now = {.writers = 1, .messages = 10, .refused = 2, .dropped_tracks = 3, .last_refusal = "a"};
+  second.status_now = {.writers = 2, .messages = 20, .refused = 4, .dropped_tracks = 6, .last_refusal = ""};
   TrackSourceStatus status = sources.status();
   EXPECT_EQ(status.writers, 3);
   EXPECT_EQ(status.messages, 30U);
-  EXPECT_EQ(status.bad_frames, 6U);
+  EXPECT_EQ(status.refused, 6U);
   EXPECT_EQ(status.dropped_tracks, 9U);
   EXPECT_EQ(status.last_refusal, "a");
   second.status_now.last_refusal = "b";

@@ -328,16 +328,55 @@ TEST(TrackTable, ManyTracksOfTwoWritersThatNumberAlikeAllLive) {
   EXPECT_EQ(ids.size(), 10000U);
 }
 
-TEST(TrackTable, CountsTheWritersThatLive) {
+// Messages of a writer that sees nothing.
+void speak(TrackTable& table, std::uint64_t writer, double from, double to) {
+  for (double t = from; t < to; t += 0.1) table.ingest(message(t, 0.0, {}, writer));
+}
+
+TEST(TrackTable, AWriterThatFallsSilentIsLostUnlessAnotherTakesItsPlace) {
   TrackTable table(kCoast);
-  table.ingest(message(10.0, 0.0, {}, 1));
-  for (double t = 10.0; t < 20.0; t += 0.5) table.ingest(message(t, 0.0, {}, 2));
-  EXPECT_EQ(table.live_writers(10.5, 1.0), 2);
-  EXPECT_EQ(table.live_writers(19.6, 1.0), 1);
-  TrackMessage aircraft = message(20.0, 0.0, {}, 3);
+  speak(table, 1, 10.0, 15.0);
+  speak(table, 2, 10.0, 20.0);
+  EXPECT_EQ(table.lost_writers(15.5, 1.0, 12.0), 0);
+  EXPECT_EQ(table.lost_writers(19.95, 1.0, 12.0), 1);
+  EXPECT_EQ(table.lost_writers(19.95, 1.0, 16.0), 0);  // before the flight
+  speak(table, 3, 20.0, 20.15);
+  EXPECT_EQ(table.lost_writers(20.2, 1.0, 12.0), 0);
+  EXPECT_EQ(table.lost_writers(25.0, 1.0, 12.0), 2);  // 1 and 2: 3 said nothing more
+}
+
+// While the old one still counts as live the new one speaks already; then that falls silent, and a third comes.
+TEST(TrackTable, AStandbyThatTakesOverAtOnceIsNoneTooMany) {
+  TrackTable table(kCoast);
+  speak(table, 1, 10.0, 15.0);
+  speak(table, 2, 15.3, 20.0);
+  speak(table, 3, 20.3, 25.0);
+  for (double t = 15.0; t < 25.0; t += 0.1) EXPECT_EQ(table.lost_writers(t, 1.0, 12.0), 0) << t;
+  EXPECT_EQ(table.lost_writers(26.5, 1.0, 12.0), 1);
+}
+
+TEST(TrackTable, AStrangersWordIsNoWatch) {
+  TrackTable table(kCoast);
+  speak(table, 1, 10.0, 20.0);
+  speak(table, 2, 12.0, 12.05);
+  TrackMessage aircraft = message(12.0, 0.0, {}, 3);
   aircraft.sends_when_empty = false;
   table.ingest(aircraft);
-  EXPECT_EQ(table.live_writers(20.0, 1.0), 1);
+  EXPECT_EQ(table.lost_writers(19.95, 1.0, 11.0), 0);
+}
+
+TEST(TrackTable, KnowsWhenTheMissionsWritersSpokeLast) {
+  TrackTable table(kCoast);
+  EXPECT_FALSE(table.newest_of(1));
+  TrackMessage named = message(10.0, 0.0, {}, 1);
+  named.named = 1;
+  table.ingest(named);
+  named.writer = 2;
+  named.received = 11.0;
+  table.ingest(named);
+  table.ingest(message(12.0, 0.0, {}, 3));
+  EXPECT_EQ(table.newest_of(1), 11.0);
+  EXPECT_FALSE(table.newest_of(2));
 }
 
 TEST(TrackTable, AWriterThatDoesNotStampIsTakenAsPrompt) {

@@ -130,7 +130,7 @@ TEST_F(SimulatedDds, TellsThePositionInEachReleasesLayout) {
         version < Px4Version::k1_17 ? "out/vehicle_local_position" : "out/vehicle_local_position_v1";
     jink::bridge::dds::PayloadReader reader(companion_, jink::bridge::dds::px4_topic(name, topic),
                                             jink::bridge::dds::kLocalPositionType,
-                                            [](const Payload&, std::uint64_t) {});
+                                            [](const Payload&, const bridge::dds::SampleWriter&) {});
     EXPECT_TRUE(eventually([&] { return reader.writers() == 1; })) << name;
   }
 }
