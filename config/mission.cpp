@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <system_error>
 
 #include "config/vehicle_reader.hpp"
 
@@ -100,6 +102,15 @@ TrackSources read_sources(const Value& value) {
   return {named[0], named[1], named[2]};
 }
 
+std::uint32_t read_icao_address(const Value& value) {
+  const std::string text = value.text();
+  std::uint32_t address = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), address, 16);
+  if (text.size() != 6 || read.ptr != text.data() + text.size() || read.ec != std::errc())
+    value.fail("is no ICAO address; expected six hexadecimal digits");
+  return address;
+}
+
 Transport read_transport(const Value& value) {
   static constexpr std::array<std::string_view, 2> kNames = {"mavlink", "dds"};
   return value.choice(kNames) == 0 ? Transport::kMavlink : Transport::kDds;
@@ -168,7 +179,7 @@ TrackPolicy read_tracks(const Value& value) {
 Endings read_endings(const Value& value) {
   static constexpr std::array<std::string_view, 3> kNames = {"hold", "land", "return"};
   static constexpr std::array<std::string_view, 3> kDangers = {"motors_cut", "return_above_fence", "hover_until_empty"};
-  const Map map(value, {"tracks", "link", "position", "battery", "breach", "planner", "accept"});
+  const Map map(value, {"tracks", "link", "position", "battery", "breach", "traffic", "planner", "accept"});
   Endings endings;
   const auto read = [&](std::string_view key, EndsIn& ending) {
     if (const auto name = map.find(key)) ending = static_cast<EndsIn>(name->choice(kNames));
@@ -178,6 +189,7 @@ Endings read_endings(const Value& value) {
   read("position", endings.position);
   read("battery", endings.battery);
   read("breach", endings.breach);
+  read("traffic", endings.traffic);
   read("planner", endings.planner);
   if (const auto accept = map.find("accept")) {
     std::array<bool, kDangers.size()> accepted{};
@@ -212,15 +224,16 @@ std::string_view missing_security_file(const std::filesystem::path& folder) {
 }
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(
-      read_document(file),
-      {"format", "name", "connection", "system_id", "vehicle", "takeoff_height", "min_height", "heights", "waypoints",
-       "arrival", "geofence", "dds", "tracks", "endings", "state", "setpoints", "intents", "time_limit"},
-      "jink-mission/1");
+  const Map map(read_document(file),
+                {"format", "name", "connection", "system_id", "icao_address", "vehicle", "takeoff_height", "min_height",
+                 "heights", "waypoints", "arrival", "geofence", "dds", "tracks", "endings", "state", "setpoints",
+                 "intents", "time_limit"},
+                "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
   if (const auto id = map.find("system_id")) mission.system_id = id->integer(closed(1, 255));
+  if (const auto address = map.find("icao_address")) mission.icao_address = read_icao_address(*address);
   NamedVehicle vehicle = read_vehicle(map.at("vehicle", "the name of a vehicle or a map"), file, vehicles);
   mission.vehicle_name = std::move(vehicle.name);
   mission.vehicle = vehicle.limits;

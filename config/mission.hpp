@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,6 +42,7 @@ struct Endings {
   EndsIn position = EndsIn::kHold;  ///< GPS or the local position is lost: never kReturn, which needs one
   EndsIn battery = EndsIn::kLand;   ///< critical: it is the one that does not wait
   EndsIn breach = EndsIn::kHold;    ///< out of the geofence, or of what the vehicle can follow
+  EndsIn traffic = EndsIn::kLand;   ///< a crewed aircraft comes: on the ground it is clear of it, above it seldom is
   EndsIn planner = EndsIn::kHold;   ///< late, failed, or this program did not run
 
   // Dangers that the mission's author takes.
@@ -93,7 +95,8 @@ struct Mission {
   std::filesystem::path dds_security;  ///< folder of keys as SROS 2 lays out an enclave's; empty: none
   Transport state = Transport::kMavlink;
   Transport setpoints = Transport::kMavlink;
-  bool intents = true;  ///< tells the team's other vehicles the committed path, and avoids theirs
+  bool intents = true;                        ///< tells the team's other vehicles the committed path, and avoids theirs
+  std::optional<std::uint32_t> icao_address;  ///< of the vehicle's own transponder
   TrackPolicy tracks;
   Endings endings;
   double time_limit = 300.0;
@@ -103,9 +106,10 @@ struct Mission {
 /// Reads and checks a jink-mission/1 file; throws ConfigError as load_scenario does, and finds vehicles as it does.
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
-/// system_id, takeoff_height, min_height, heights (ground, origin or amsl), arrival, geofence (unbounded; with both min
-/// and max when given), dds and each of its keys (security: a folder, from the file's on), tracks and each of its keys,
-/// endings and each of its keys, state and setpoints (mavlink or dds), intents, time_limit.
+/// system_id, icao_address (six hexadecimal digits), takeoff_height, min_height, heights (ground, origin or amsl),
+/// arrival, geofence (unbounded; with both min and max when given), dds and each of its keys (security: a folder, from
+/// the file's on), tracks and each of its keys, endings and each of its keys, state and setpoints (mavlink or dds),
+/// intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and
 /// tcpout need the host), or serial or serial_flowcontrol and /DEVICE[:BAUD]. With heights above the ground a waypoint

@@ -181,6 +181,9 @@ supervisor::FlightContext Companion::context(double now) {
     context.outside = std::max(beside.head<2>().maxCoeff(), fence.min.z() - position.z());
     context.above = position.z() - fence.max.z();
   }
+  const std::optional<Intake::Approach> approach = intake_.approach(now);
+  reporter_.aircraft(now, approach);
+  context.aircraft_comes = approach.has_value();
   context.cannot_follow = motion_.cannot_follow(now);
   context.at_takeoff_height = motion_.at_takeoff_height(state);
   if (supervisor_.phase() == supervisor::Phase::kFlying && route_.pass(state.motion.value.position))

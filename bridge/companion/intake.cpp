@@ -47,6 +47,7 @@ bool Intake::take_tracks(double now) {
       continue;
     }
     table_.ingest(message);
+    if (!message.aircraft.empty()) aircraft_ = std::move(message.aircraft);
     any = true;
   }
   // Sooner than that is a hazard: by then the tracks would be forgotten.
@@ -79,6 +80,16 @@ std::string Intake::silent_writer(double now) const {
     if (!newest || now - *newest > mission_.tracks.timeout_s) return mission_.tracks.writers[i].participant;
   }
   return {};
+}
+
+std::optional<Intake::Approach> Intake::approach(double now) const {
+  std::optional<Approach> first;
+  if (!state_.motion.heard()) return first;
+  for (const tracking::Aircraft& aircraft : aircraft_) {
+    const auto seconds = tracking::less_than_well_clear_in(aircraft, now, state_.motion.value.position);
+    if (seconds && (!first || *seconds < first->seconds)) first = Approach{aircraft.icao_address, *seconds};
+  }
+  return first;
 }
 
 int Intake::lost_writers(double now, std::optional<double> flight_began) {

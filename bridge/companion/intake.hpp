@@ -51,6 +51,12 @@ class Intake {
   /// Writers that watched in this flight, and watch no more, nor anybody in their place; 0 where the mission names who
   /// is to watch. `flight_began`: none: it has not.
   [[nodiscard]] int lost_writers(double now, std::optional<double> flight_began);
+  /// The crewed aircraft that is the first to come to less than well clear, and in how many seconds.
+  struct Approach {
+    std::uint32_t icao_address = 0;
+    double seconds = 0.0;
+  };
+  [[nodiscard]] std::optional<Approach> approach(double now) const;
   /// Messages of tracks that are all farther out of the geofence than it is wide: of another frame.
   [[nodiscard]] std::uint64_t elsewhere() const { return elsewhere_; }
 
@@ -68,6 +74,7 @@ class Intake {
   std::optional<double> ground_;
   double flight_began_ = planner::base::kInfinity;
   std::uint64_t elsewhere_ = 0;
+  std::vector<tracking::Aircraft> aircraft_;  // of the newest message that had some
 };
 
 }  // namespace jink::bridge::companion

@@ -2,7 +2,9 @@
 #include "bridge/companion/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "bridge/base/text.hpp"
@@ -119,6 +121,15 @@ void FlightReporter::cautious(double now, bool cautious) {
 void FlightReporter::stuck(double now, bool stuck) {
   if (changed(said_.stuck, stuck))
     event(now, "stuck", stuck ? "no nearer to the target for 4 s: looking for a way round" : "over");
+}
+
+void FlightReporter::aircraft(double now, const std::optional<Intake::Approach>& approach) {
+  if (!changed(said_.aircraft, approach ? approach->icao_address : 0U) || !approach) return;
+  std::array<char, 16> address{};
+  std::snprintf(address.data(), address.size(), "%06X", approach->icao_address);
+  event(now, "aircraft",
+        std::string(address.data()) + " comes to less than well clear (2000 ft beside, 250 ft above or below) in " +
+            std::to_string(std::lround(approach->seconds)) + " s; the vehicle's own? name it as icao_address");
 }
 
 void FlightReporter::sending(double now, bool works) {

@@ -92,6 +92,7 @@ class FlightReporter {
   void cautious(double now, bool cautious);
   void stuck(double now, bool stuck);
   void sending(double now, bool works);
+  void aircraft(double now, const std::optional<Intake::Approach>& approach);
   /// At the end of a step: what changed in it. `margin` is the planner's, for `tracking_error`.
   void announce(double now, const supervisor::Supervisor& supervisor, Intake& intake, double margin,
                 double tracking_error);
@@ -112,6 +113,7 @@ class FlightReporter {
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;
     std::uint64_t elsewhere = 0;
+    std::uint32_t aircraft = 0;
     int own_tracks = 0;
     std::optional<double> at;
   };

@@ -254,15 +254,15 @@ class Inspector {
               "the frame must be 'map' (ENU about the autopilot's local origin, or tracks.origins says where), values "
               "finite and sane, and both ends built from the same message definition"};
     }
+    finding += seen.stamp_age_s ? ", stamps " + number(*seen.stamp_age_s, "%.3f") + " s old"
+                                : std::string(", stamps are not system time");
+    if (seen.stamp_age_s && std::abs(*seen.stamp_age_s) > kStampTolerance_s) {
+      return {Check::Level::kWarning, probe.topic(), finding,
+              "the writer's clock differs from this machine's, or its data are late: synchronise them (chrony, PTP)"};
+    }
     if (seen.obstacles == 0) {
       return {Check::Level::kWarning, probe.topic(), finding + ", no obstacle in them",
               "an empty scene and a blind tracker look the same: put something into its view"};
-    }
-    if (!seen.stamp_age_s) return {Check::Level::kOk, probe.topic(), finding + ", stamps are not system time", {}};
-    finding += ", stamps " + number(*seen.stamp_age_s, "%.3f") + " s old";
-    if (std::abs(*seen.stamp_age_s) > kStampTolerance_s) {
-      return {Check::Level::kWarning, probe.topic(), finding,
-              "the writer's clock differs from this machine's, or its data are late: synchronise them (chrony, PTP)"};
     }
     return {Check::Level::kOk, probe.topic(), finding, {}};
   }

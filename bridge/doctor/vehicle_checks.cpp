@@ -106,6 +106,11 @@ void inspect_traffic(const config::Mission& mission, const LinkFindings& heard, 
   for (std::size_t i = 0; i < std::min(needed, heard.rates.size()); ++i) {
     checks.push_back(inspect_rate(heard.rates[i], i));
   }
+  if (heard.counts.answers == 0) {
+    checks.push_back({Level::kFault, "answers", "none to anything that it is asked",
+                      "with MAVLink signing (PX4 1.18: a key on the SD card) it takes signed messages alone, and jink "
+                      "cannot sign (docs/security.md); else the way to the autopilot is broken"});
+  }
   Check round_trip{Level::kWarning, "round trip", "no answer to PING", "check that messages reach the autopilot"};
   if (heard.info.round_trip_s) {
     const bool slow = *heard.info.round_trip_s > kLongRoundTrip_s;

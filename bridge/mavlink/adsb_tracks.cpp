@@ -32,8 +32,8 @@ bool within(double value, double limit) {
   return std::abs(value) <= limit;  // false for NaN
 }
 
-// The velocity and its standard deviation, from what is valid in the report.
-void set_velocity(const AdsbReport& report, Track& track) {
+// The velocity and its standard deviation, from what is valid in the report; returns that of the climb.
+double set_velocity(const AdsbReport& report, Track& track) {
   const bool speed_told = has(report, kValidVelocity) && within(report.horizontal_velocity, kFastest);
   const bool course_told = has(report, kValidHeading) && within(report.heading_deg, 360.0);
   const bool climb_told = has(report, kValidVerticalVelocity) && within(report.vertical_velocity, kFastest);
@@ -47,9 +47,10 @@ void set_velocity(const AdsbReport& report, Track& track) {
   }
   if (climb_told) {
     track.velocity.z() = report.vertical_velocity;
-  } else {
-    track.velocity_sigma = std::hypot(track.velocity_sigma, AdsbTracks::kClimbSigma);
+    return 0.0;
   }
+  track.velocity_sigma = std::hypot(track.velocity_sigma, AdsbTracks::kClimbSigma);
+  return AdsbTracks::kClimbSigma;
 }
 
 }  // namespace
@@ -77,19 +78,20 @@ EmitterModel emitter_model(std::uint32_t emitter_type) {
     case 12:
       return {8.0, 40.0};
     case 14:
-      return {5.0, 50.0};
+      return {5.0, 50.0, /*crewed=*/false};
     case 17:
     case 18:
-      return {8.0, 30.0};
+      return {8.0, 30.0, /*crewed=*/false};
     case 19:
-      return {15.0, 0.0};
+      return {15.0, 0.0, /*crewed=*/false};
     default:
       return {40.0, 250.0};
   }
 }
 
-AdsbTracks::AdsbTracks(Reports reports, Origin origin, const base::Clock& clock)
-    : reports_(std::move(reports)), origin_(std::move(origin)), clock_(clock) {}
+AdsbTracks::AdsbTracks(Reports reports, Origin origin, const base::Clock& clock,
+                       std::optional<std::uint32_t> own_address)
+    : reports_(std::move(reports)), origin_(std::move(origin)), clock_(clock), own_address_(own_address) {}
 
 bool AdsbTracks::refuse(std::uint32_t icao_address, const char* why) {
   ++dropped_;
@@ -101,6 +103,7 @@ bool AdsbTracks::refuse(std::uint32_t icao_address, const char* why) {
 bool AdsbTracks::take(const AdsbReport& report) {
   senders_[(std::uint64_t{report.system} << 32U) | report.component] = report.received;
   const std::uint32_t id = report.icao_address;
+  if (own_address_ == id) return false;
   if (!has(report, kValidCoordinates) || !within(report.latitude_deg, 90.0) || !within(report.longitude_deg, 180.0)) {
     return refuse(id, "no valid coordinates");
   }
@@ -115,12 +118,17 @@ bool AdsbTracks::take(const AdsbReport& report) {
   track.position = frames::LocalFrame(*origin).to_enu({report.latitude_deg, report.longitude_deg, report.altitude_m});
   if (!(track.position.norm() <= kRange)) return refuse(id, "too far away");
   if (aircraft_.size() >= kMostAircraft && !aircraft_.contains(id)) return refuse(id, "too many aircraft");
-  track.radius = emitter_model(report.emitter_type).radius;
-  track.position_sigma =
-      std::hypot(kHorizontalSigma, report.altitude_type == kGeometricAltitude ? kGeometricSigma : kBarometricSigma);
-  set_velocity(report, track);
+  const EmitterModel model = emitter_model(report.emitter_type);
+  const double vertical_sigma = report.altitude_type == kGeometricAltitude ? kGeometricSigma : kBarometricSigma;
+  track.position_sigma = std::hypot(kHorizontalSigma, vertical_sigma);
+  track.radius = model.radius + kSigmas * track.position_sigma;
+  const double climb_sigma = set_velocity(report, track);
   if (const char* bad = tracking::refusal(track); bad != nullptr) return refuse(id, bad);
-  aircraft_[id] = {track, report.received - std::max(0.0, report.since_contact)};
+  const double measured = report.received - std::max(0.0, report.since_contact);
+  const tracking::Aircraft crewed{
+      id,         measured, track.position, track.velocity, kHorizontalSigma, vertical_sigma, track.velocity_sigma,
+      climb_sigma};
+  aircraft_[id] = {track, crewed, model.crewed, measured};
   return true;
 }
 
@@ -134,7 +142,8 @@ bool AdsbTracks::poll(tracking::TrackMessage& message) {
   status_.writers = static_cast<int>(senders_.size());
   const bool due = !aircraft_.empty() && now - last_message_ >= kRepeat_s;
   if (!fresh && !due) return false;
-  message = tracking::TrackMessage{{kWriter, now, 0.0}, {}, std::exchange(dropped_, 0), /*placed=*/true};
+  message = tracking::TrackMessage{{kWriter, now, 0.0}, {}, std::exchange(dropped_, 0)};
+  message.placed = true;
   message.sends_when_empty = false;
   for (const auto& [id, aircraft] : aircraft_) {
     const double age = std::max(0.0, now - aircraft.measured);
@@ -147,6 +156,7 @@ bool AdsbTracks::poll(tracking::TrackMessage& message) {
     track.velocity_sigma = std::min(std::hypot(track.velocity_sigma, kManoeuvre * age), tracking::TrackLimits::kSigma);
     track.age = age;
     message.tracks.push_back(track);
+    if (aircraft.is_crewed) message.aircraft.push_back(aircraft.crewed);
   }
   last_message_ = now;
   ++status_.messages;

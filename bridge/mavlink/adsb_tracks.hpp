@@ -37,8 +37,9 @@ struct AdsbReport {
 
 /// What ADSB_EMITTER_TYPE says of an aircraft.
 struct EmitterModel {
-  double radius;  ///< m, half the greatest extent of the largest common one of the class
-  double speed;   ///< m/s, what it may do where nothing is known of its speed
+  double radius;       ///< m, half the greatest extent of the largest common one of the class
+  double speed;        ///< m/s, what it may do where nothing is known of its speed
+  bool crewed = true;  ///< in the air with people on board: all but 14 and 17 to 19
 };
 /// | type | class | radius m | speed m/s |
 /// |---|---|---|---|
@@ -68,8 +69,11 @@ struct EmitterModel {
 /// velocity_sigma the speed of its class (EmitterModel); where the course is not, 0 and the speed told; where the
 /// climb is not, 0 and kClimbSigma. All told: kVelocitySigma.
 ///
-/// Left out, counted and said why: no coordinates or no altitude, by flag or value; no origin yet; farther away than
-/// kRange; not heard for kKeep_s.
+/// A track's radius is that of its class and kSigmas times the position's sigma as measured: the planner's own margin
+/// for what is uncertain ends at decimetres. Crewed aircraft are told as such too (TrackMessage::aircraft, WellClear).
+///
+/// Left out: the vehicle's own transponder (`own_address`). Left out, counted and said why: no coordinates or no
+/// altitude, by flag or value; no origin yet; farther away than kRange; not heard for kKeep_s.
 ///
 /// A receiver with an empty sky sends nothing, so silence says nothing: status().writers counts the senders heard
 /// within kSender_s, and an ADS-B receiver alone is no proof of a live source. Not thread-safe.
@@ -78,13 +82,14 @@ class AdsbTracks final : public tracking::TrackSource {
   static constexpr double kKeep_s = 6.0;
   static constexpr double kRepeat_s = 0.5;
   static constexpr double kSender_s = 10.0;
-  static constexpr double kRange = 5e4;                          ///< m
-  static constexpr double kHorizontalSigma = 15.0;               ///< m: NACp 9, 30 m in 95 % of the time
-  static constexpr double kBarometricSigma = 20.0;               ///< m
-  static constexpr double kGeometricSigma = 40.0;                ///< m
-  static constexpr double kVelocitySigma = 2.0;                  ///< m/s
-  static constexpr double kClimbSigma = 5.0;                     ///< m/s
-  static constexpr double kManoeuvre = 2.0;                      ///< m/s^2
+  static constexpr double kRange = 5e4;             ///< m
+  static constexpr double kHorizontalSigma = 15.0;  ///< m: NACp 9, 30 m in 95 % of the time
+  static constexpr double kBarometricSigma = 20.0;  ///< m
+  static constexpr double kGeometricSigma = 40.0;   ///< m
+  static constexpr double kVelocitySigma = 2.0;     ///< m/s
+  static constexpr double kClimbSigma = 5.0;        ///< m/s
+  static constexpr double kManoeuvre = 2.0;         ///< m/s^2
+  static constexpr double kSigmas = 2.0;
   static constexpr std::uint64_t kWriter = 0x4a494e4b41445342U;  ///< "JINKADSB": no DDS writer's hash but by accident
   static constexpr std::size_t kMostAircraft = 1024;
 
@@ -93,7 +98,9 @@ class AdsbTracks final : public tracking::TrackSource {
   /// The autopilot's local origin as it stands; MavsdkLink::state().origin.
   using Origin = std::function<std::optional<frames::Geodetic>()>;
 
-  AdsbTracks(Reports reports, Origin origin, const base::Clock& clock);
+  /// `own_address`: the vehicle's ICAO address; none: it has no transponder, or it is not known.
+  AdsbTracks(Reports reports, Origin origin, const base::Clock& clock,
+             std::optional<std::uint32_t> own_address = std::nullopt);
 
   bool poll(tracking::TrackMessage& message) override;
   [[nodiscard]] tracking::TrackSourceStatus status() const override;
@@ -101,7 +108,9 @@ class AdsbTracks final : public tracking::TrackSource {
  private:
   struct Aircraft {
     planner::base::Track track;  // as told
-    double measured = 0.0;       // companion's clock
+    tracking::Aircraft crewed;
+    bool is_crewed = true;
+    double measured = 0.0;  // companion's clock
   };
   bool take(const AdsbReport& report);
   bool refuse(std::uint32_t icao_address, const char* why);
@@ -109,6 +118,7 @@ class AdsbTracks final : public tracking::TrackSource {
   Reports reports_;
   Origin origin_;
   const base::Clock& clock_;
+  const std::optional<std::uint32_t> own_address_;
   std::map<std::uint32_t, Aircraft> aircraft_;  // by ICAO address
   std::map<std::uint64_t, double> senders_;     // newest report of each
   double last_message_ = -1.0;

@@ -30,6 +30,7 @@ struct LinkCounts {
   std::uint64_t late = 0;              ///< positions left out: older than one that had come before
   std::uint32_t other_autopilots = 0;  ///< systems beside ours whose component 1 calls itself an autopilot
   std::uint64_t dropped_adsb = 0;      ///< reports thrown away because nobody took them
+  std::uint64_t answers = 0;           ///< to anything that was asked: commands, parameters, PING
 };
 
 /// What the autopilot has told of itself, beside VehicleState.
@@ -84,7 +85,7 @@ class AutopilotTelemetry {
 
   /// `system_id` is the link's to fill in.
   [[nodiscard]] vehicle::VehicleState state(double now) const;
-  /// `setpoints_sent`, `other_autopilots` and `dropped_adsb` are the link's.
+  /// `setpoints_sent`, `other_autopilots`, `dropped_adsb` and `answers` are the link's.
   [[nodiscard]] const LinkCounts& counts() const { return counts_; }
   /// `other_systems` are the link's.
   [[nodiscard]] const LinkInfo& info() const { return info_; }

@@ -269,7 +269,10 @@ void MavsdkLink::Impl::request(vehicle::Command command) {
 std::optional<vehicle::CommandReport> MavsdkLink::Impl::next_report() {
   const double now = clock_.now();
   const std::scoped_lock lock(mutex_);
-  return commands_.next(now);
+  std::optional<vehicle::CommandReport> report = commands_.next(now);
+  if (report && report->detail == vehicle::CommandTracker::kNoAnswer && answers_ == 0)
+    report->detail += ", as to all else: does the autopilot take signed messages alone (jink doctor)?";
+  return report;
 }
 
 void MavsdkLink::Impl::request_parameter(const std::string& name) const {

@@ -148,6 +148,7 @@ class MavsdkLink::Impl {
   std::set<std::uint32_t> other_autopilots_;
   std::deque<mavlink::AdsbReport> adsb_;
   std::uint64_t dropped_adsb_ = 0;
+  std::uint64_t answers_ = 0;
   std::map<std::string, vehicle::px4::Parameter> parameters_;  // answers to the request under way
   double ping_due_ = 0.0;
   vehicle::CommandTracker commands_;

@@ -166,12 +166,16 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::C
   // Without the extension fields the answer is taken as ours.
   const bool ours = (message.target_system == 0 || message.target_system == own_system_id_) &&
                     (message.target_component == 0 || message.target_component == kOwnComponent);
-  if (ours) commands_.acknowledge(message.command, message.result, now);
+  if (!ours) return;
+  ++answers_;
+  commands_.acknowledge(message.command, message.result, now);
 }
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Ping& message) {
   const std::scoped_lock lock(mutex_);
-  if (message.target_system == own_system_id_ && message.target_component == kOwnComponent) telemetry_.on(now, message);
+  if (message.target_system != own_system_id_ || message.target_component != kOwnComponent) return;
+  ++answers_;
+  telemetry_.on(now, message);
 }
 
 void MavsdkLink::Impl::on(double /*now*/, const Sender& /*sender*/, const mavlink::ParamValue& message) {
@@ -181,6 +185,7 @@ void MavsdkLink::Impl::on(double /*now*/, const Sender& /*sender*/, const mavlin
         telemetry_.info().autopilot.value_or(vehicle::px4::kAutopilotPx4) == vehicle::px4::kAutopilotPx4;
     vehicle::px4::Parameter parameter = vehicle::px4::parameter(message.name, message.type, message.field, bytewise);
     telemetry_.on(parameter);
+    ++answers_;
     if (parameters_.size() >= kParameters && !parameters_.contains(message.name)) return;
     parameters_[message.name] = std::move(parameter);
   }
@@ -221,6 +226,7 @@ mavlink::LinkCounts MavsdkLink::Impl::counts() const {
   counts.setpoints_sent = setpoints_sent_;
   counts.other_autopilots = static_cast<std::uint32_t>(other_autopilots_.size());
   counts.dropped_adsb = dropped_adsb_;
+  counts.answers = answers_;
   return counts;
 }
 

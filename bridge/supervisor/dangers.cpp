@@ -19,7 +19,8 @@ std::string danger(const config::Mission& mission, const vehicle::FailsafeParame
       return "the autopilot cuts its motors out of its geofence (GF_ACTION 4): set 2 (hold), or let the mission's "
              "endings accept motors_cut";
   }
-  const auto choices = {endings.tracks, endings.link, endings.battery, endings.breach, endings.planner};
+  const auto choices = {endings.tracks, endings.link,    endings.battery,
+                        endings.breach, endings.traffic, endings.planner};
   const bool returns = std::find(choices.begin(), choices.end(), config::EndsIn::kReturn) != choices.end();
   const double ceiling = mission.geofence.max.z() - mission.ground;
   if (returns && !endings.return_above_fence && parameters.return_height && *parameters.return_height > ceiling) {

@@ -30,6 +30,7 @@ constexpr Hazard kHazards[] = {
     {"the autopilot has lost its position", [](const S& s) { return !s.state.local_position_ok; }, kBrake,
      &E::position},
     {"the autopilot has lost its GPS", [](const S& s) { return s.state.gps_lost; }, kBrake, &E::position},
+    {"a crewed aircraft comes too near", [](const S& s) { return s.flight.aircraft_comes; }, kBrake, &E::traffic},
     {"the vehicle has left the geofence", [](const S& s) { return s.flight.outside > kBreach; }, kBrake, &E::breach},
     {"the vehicle is above the geofence", [](const S& s) { return s.flight.above > kBreach; }, kBrake, &E::breach},
     {"the vehicle cannot follow its setpoints", [](const S& s) { return s.flight.cannot_follow; }, kBrake, &E::breach},

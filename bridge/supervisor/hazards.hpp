@@ -25,14 +25,15 @@ struct FlightContext {
   std::optional<double> newest_tracks;  ///< reception of the newest track message, see Intake
   std::string silent_writer;            ///< of tracks, that the mission names; empty: there is none
   std::optional<double> newest_plan;    ///< when the newest plan was made
-  int lost_writers = 0;        ///< writers of tracks that were live in this flight and are silent, not replaced
-  double unsent_for = 0.0;     ///< s, for which setpoints could not be handed to the transport
-  std::string misplaced;       ///< why the mission cannot be flown from where the vehicle is; empty: it can
-  bool ground_known = true;    ///< its height, if the mission counts from it
-  bool low = false;            ///< clearly under min_height
-  double outside = 0.0;        ///< m, beside or under the geofence, of a vehicle that was inside
-  double above = 0.0;          ///< m, likewise above its top
-  bool cannot_follow = false;  ///< what is asked for at the least is more than the vehicle can do
+  int lost_writers = 0;         ///< writers of tracks that were live in this flight and are silent, not replaced
+  double unsent_for = 0.0;      ///< s, for which setpoints could not be handed to the transport
+  std::string misplaced;        ///< why the mission cannot be flown from where the vehicle is; empty: it can
+  bool ground_known = true;     ///< its height, if the mission counts from it
+  bool low = false;             ///< clearly under min_height
+  double outside = 0.0;         ///< m, beside or under the geofence, of a vehicle that was inside
+  double above = 0.0;           ///< m, likewise above its top
+  bool aircraft_comes = false;  ///< with people on board, to less than well clear
+  bool cannot_follow = false;   ///< what is asked for at the least is more than the vehicle can do
   bool at_takeoff_height = false;
   bool overhead_free = true;                     ///< nothing comes into the way of a take-off
   bool at_target = false;                        ///< within the arrival tolerance of the last waypoint, slow

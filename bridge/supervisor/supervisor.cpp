@@ -97,6 +97,8 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     waiting_for_ = "the local origin's height above the sea";
   } else if (state.battery == vehicle::BatteryState::kLow || state.battery == vehicle::BatteryState::kCritical) {
     waiting_for_ = "a charged battery: it is " + std::string(vehicle::to_string(state.battery));
+  } else if (in.flight.aircraft_comes && !state.in_air) {
+    waiting_for_ = "a crewed aircraft to pass";
   } else if (!in.flight.overhead_free) {
     waiting_for_ = "the air above the vehicle to be free of obstacles";
   }

@@ -20,11 +20,11 @@ const char* refusal(const planner::base::Track& t) {
 }
 
 bool elsewhere(const TrackMessage& message, const planner::base::Box& fence) {
+  if (message.placed || (message.tracks.empty() && message.far == 0)) return false;
   const double width = (fence.max - fence.min).head<2>().norm();
-  if (!std::isfinite(width) || message.tracks.empty() || message.placed) return false;
   return std::all_of(message.tracks.begin(), message.tracks.end(), [&](const planner::base::Track& track) {
     const Vec3 beside = (fence.min - track.position).cwiseMax(track.position - fence.max).cwiseMax(0.0);
-    return beside.head<2>().norm() > width + track.radius;
+    return beside.head<2>().norm() > width + track.radius;  // false where there is no fence
   });
 }
 
@@ -39,6 +39,7 @@ void TrackValidator::add(const planner::base::Track& track) {
     bad_what_ = bad;
     bad_id_ = track.id;
     ++message_.dropped;
+    if (track.position.allFinite() && track.position.norm() > TrackLimits::kPosition) ++message_.far;
   } else {
     message_.tracks.push_back(track);
   }

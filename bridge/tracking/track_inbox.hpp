@@ -29,8 +29,9 @@ struct TrackLimits {
 /// every source and before the planner.
 [[nodiscard]] const char* refusal(const planner::base::Track& track);
 
-/// Whether all tracks of a message, and there are some, are farther beside the fence than it is wide: they are given in
-/// another frame, or concern nobody here. Never of a message that is `placed`; heights do not count.
+/// Whether all tracks of a message, and there are some, are farther beside the fence than it is wide or beyond
+/// TrackLimits::kPosition: they are given in another frame, or concern nobody here. Never of a message that is
+/// `placed`; heights do not count.
 [[nodiscard]] bool elsewhere(const TrackMessage& message, const planner::base::Box& fence);
 
 /// Takes the tracks of one message in, one by one; what is non-finite, absurd or beyond kTracksPerMessage stays out and

@@ -10,6 +10,7 @@
 
 #include "bridge/base/notifier.hpp"
 #include "bridge/base/stamped.hpp"
+#include "bridge/tracking/well_clear.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::bridge::tracking {
@@ -17,9 +18,11 @@ namespace jink::bridge::tracking {
 /// One message of one writer: all tracks that it now sees, in ENU.
 struct TrackMessage : base::Reception<base::Frame::kLocal> {
   std::vector<planner::base::Track> tracks;
-  std::uint32_t dropped = 0;  ///< tracks of this message left out: non-finite or absurd values
-  bool placed = false;        ///< its frame's place is known: it has an origin, or is the vehicle's
-  std::size_t named = 0;      ///< i + 1: of the writer i that the mission names; 0: it names none
+  std::uint32_t dropped = 0;         ///< tracks of this message left out: non-finite or absurd values
+  std::uint32_t far = 0;             ///< of these, those farther than TrackLimits::kPosition
+  bool placed = false;               ///< its frame's place is known: it has an origin, or is the vehicle's
+  std::vector<Aircraft> aircraft{};  ///< those of them with people on board, of a source that knows
+  std::size_t named = 0;             ///< i + 1: of the writer i that the mission names; 0: it names none
   bool sends_when_empty =
       true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching
 };

@@ -41,7 +41,7 @@ void CommandTracker::acknowledge(std::uint16_t mav_cmd, int result, double now) 
 std::optional<CommandReport> CommandTracker::next(double now) {
   std::erase_if(open_, [&](const Open& open) {
     if (now < open.deadline) return false;
-    reports_.push_back({open.command, open.accepted_once, open.accepted_once ? "" : "no answer"});
+    reports_.push_back({open.command, open.accepted_once, open.accepted_once ? "" : kNoAnswer});
     return true;
   });
   if (reports_.empty()) return std::nullopt;

@@ -25,6 +25,7 @@ class CommandTracker {
  public:
   static constexpr double kAnswer_s = 1.0;
   static constexpr double kSecondAnswer_s = 0.3;
+  static constexpr const char* kNoAnswer = "no answer";  ///< a report's detail
 
   /// A request has been sent as the command `mav_cmd` at `now`.
   void start(Command command, std::uint16_t mav_cmd, double now);

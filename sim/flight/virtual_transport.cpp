@@ -235,7 +235,8 @@ bool VirtualTracks::poll(bridge::tracking::TrackMessage& message) {
 
 // As a reader behind a real transport does it.
 void VirtualTracks::accept(const world::TrackMessage& measured, bridge::tracking::TrackMessage& message) {
-  message = {{1, now_, now_ - measured.stamp - measured.clock_offset}, {}, 0, /*placed=*/true};
+  message = {{1, now_, now_ - measured.stamp - measured.clock_offset}, {}};
+  message.placed = true;
   bridge::tracking::TrackValidator validator(message, measured.tracks.size());
   for (const planner::base::Track& track : measured.tracks) validator.add(track);
   ++status_.messages;

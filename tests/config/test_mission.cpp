@@ -171,12 +171,20 @@ TEST(LoadMission, FindsTheFolderOfKeysBesideTheMission) {
       std::filesystem::equivalent(load_mission(folder.write("m.yaml", text)).dds_security, folder.path() / "keys"));
 }
 
+TEST(LoadMission, ReadsTheTranspondersAddress) {
+  const Folder folder;
+  EXPECT_FALSE(load_mission(folder.write("d.yaml", kValidMission)).icao_address);
+  EXPECT_EQ(load_mission(folder.write("m.yaml", kValidMission + "icao_address: 3c6666\n")).icao_address, 0x3C6666U);
+  EXPECT_EQ(load_mission(folder.write("m.yaml", kValidMission + "icao_address: 400123\n")).icao_address, 0x400123U);
+}
+
 TEST(LoadMission, ReadsHowFlightsEndByCause) {
   const Folder folder;
   const Endings defaults = load_mission(folder.write("d.yaml", kValidMission)).endings;
   for (const auto member : {&Endings::tracks, &Endings::link, &Endings::position, &Endings::breach, &Endings::planner})
     EXPECT_EQ(defaults.*member, EndsIn::kHold);
   EXPECT_EQ(defaults.battery, EndsIn::kLand);
+  EXPECT_EQ(defaults.traffic, EndsIn::kLand);
   EXPECT_FALSE(defaults.motors_cut || defaults.return_above_fence || defaults.hover_until_empty);
   const Endings e =
       load_mission(folder.write("m.yaml", kValidMission +
@@ -225,6 +233,8 @@ TEST(LoadMission, RefusesBadConnections) {
       {url, "serial:///dev/ttyACM0:fast", 3, "connection", "serial:///dev/ttyACM0:fast", "has no valid baud rate"},
       {url, "", 3, "connection", "null", "is empty; expected text"},
       {"connection: " + url + "\n", "", 1, "connection", "", "missing; expected a MAVSDK URL"},
+      {"connection: " + url, "connection: " + url + "\nicao_address: 3C666", 4, "icao_address", "3C666", "six hex"},
+      {"connection: " + url, "connection: " + url + "\nicao_address: 3C666G", 4, "icao_address", "3C666G", "six hex"},
       {"connection: " + url, "connection: " + url + "\nsystem_id: 0", 4, "system_id", "0", "[1, 255]"},
       {"connection: " + url, "connection: " + url + "\nsystem_id: 256", 4, "system_id", "256", "[1, 255]"},
   };

@@ -127,7 +127,7 @@ struct Transports {
     if (sources.adsb) {
       const auto reports = [&mavlink](bridge::mavlink::AdsbReport& report) { return mavlink.next_adsb(report); };
       const auto origin = [&mavlink] { return mavlink.state().origin; };
-      tracks.add(adsb.emplace(reports, origin, clock));
+      tracks.add(adsb.emplace(reports, origin, clock, mission.icao_address));
     }
     const bool state = mission.state == config::Transport::kDds;
     const bool setpoints = mission.setpoints == config::Transport::kDds;

@@ -276,6 +276,44 @@ TEST(Companion, ReportsRefusedTracksOnceASecond) {
   EXPECT_EQ(loop.recorder.count("tracks_refused"), settled);
 }
 
+// An aircraft of 60 m/s, 40 s away, at the vehicle's height: it waits on the ground, and lands in the air.
+TEST(Companion, KeepsWellClearOfCrewedAircraft) {
+  const auto aircraft = [](Loop& loop, const Vec3& position) {
+    tracking::TrackMessage message{{9, loop.now, 0.0}, {}};
+    message.placed = true;
+    message.sends_when_empty = false;
+    tracking::Aircraft a;
+    a.icao_address = 0x3C6666;
+    a.stamp = loop.now;
+    a.position = position;
+    a.velocity = {-60, 0, 0};
+    message.aircraft = {a};
+    loop.source.messages.push_back(message);
+  };
+  Loop grounded;
+  for (int i = 0; i < 150; ++i) {
+    aircraft(grounded, {2900, 0, 50});
+    grounded.turn();
+  }
+  EXPECT_TRUE(grounded.link.requests.empty());
+  EXPECT_EQ(grounded.companion.supervisor().waiting_for(), "a crewed aircraft to pass");
+  EXPECT_TRUE(grounded.recorder.last("aircraft").starts_with("3C6666 comes to less than well clear"));
+  for (int i = 0; i < 150; ++i) {
+    aircraft(grounded, {-2900, 0, 50});
+    grounded.turn();
+  }
+  EXPECT_FALSE(grounded.link.requests.empty());
+
+  Loop airborne;
+  airborne.airborne().fly();
+  for (int i = 0; i < 500 && !airborne.companion.supervisor().done(); ++i) {
+    aircraft(airborne, {2900, 0, 50});
+    airborne.turn();
+  }
+  EXPECT_EQ(airborne.recorder.last("hazard"), "a crewed aircraft comes too near");
+  EXPECT_EQ(airborne.link.requests.back(), vehicle::Command::kLand);
+}
+
 // A metric grid's coordinates, say: what cannot be right satisfies nobody.
 TEST(Companion, TracksOfAnotherFrameAreRefusedAndNotFlownWith) {
   Loop loop;

@@ -71,7 +71,9 @@ bool has(const std::string& text, const std::string& part) {
 TEST(DdsInspect, IsPleasedWithAWriterWhoseDataArrive) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  const auto checks = inspect(mission, [&] { (void)writer.publish({}, dds::system_time() - 0.25); });
+  planner::base::Track obstacle;
+  obstacle.radius = 0.5;
+  const auto checks = inspect(mission, [&] { (void)writer.publish(std::vector{obstacle}, dds::system_time() - 0.25); });
   const Check check = find(checks, dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kOk) << check.finding;
   EXPECT_TRUE(has(check.finding, "1 writer,") && has(check.finding, " Hz, stamps 0.2")) << check.finding;
@@ -243,7 +245,8 @@ TEST(DdsDoctor, SaysWhomTheMissionMissesAndWhoElseWrites) {
   DdsTrackWriter first(front);
   DdsTrackWriter second(other);
   std::string all;
-  for (const Check& check : inspect(mission, [&] { (void)(first.publish({}, 1.8e9) && second.publish({}, 1.8e9)); }))
+  for (const Check& check : inspect(
+           mission, [&] { (void)(first.publish({}, dds::system_time()) && second.publish({}, dds::system_time())); }))
     all += std::string(to_string(check.level)) + ": " + check.finding + "\n";
   EXPECT_NE(all.find("missing: nothing from 'rear'"), std::string::npos) << all;
   EXPECT_NE(all.find("warning: also from 'other', which is not heard"), std::string::npos) << all;
@@ -257,11 +260,15 @@ TEST(DdsDoctor, SaysThatObstaclesAreGivenInAnotherFrame) {
   DdsTrackWriter writer(mission.dds_domain);
   planner::base::Track track;
   track.radius = 0.5;
-  track.position = {465'000, 5'250'000, 3};
+  track.position = {65'000, 50'000, 3};
   const auto act = [&] { (void)writer.publish(std::vector{track}, dds::system_time()); };
   const Check check = find(inspect(mission, act), dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_NE(check.finding.find("farther beside the geofence"), std::string::npos) << check.finding;
+  track.position = {465'000, 5'250'000, 3};  // a metric grid's, say
+  EXPECT_NE(find(inspect(mission, act), dds::kTracksTopic).finding.find("farther beside the geofence"),
+            std::string::npos);
+  track.position = {65'000, 50'000, 3};
   mission.tracks.origins[0] = config::GeodeticOrigin{};
   EXPECT_EQ(find(inspect(mission, act), dds::kTracksTopic).level, Check::Level::kOk);
 }

@@ -41,6 +41,7 @@ LinkFindings healthy() {
   h.info.version = vehicle::px4::version(0x01110040);
   h.info.estimator = 895;
   h.info.round_trip_s = 0.001;
+  h.counts.answers = 3;
   h.rates = {{"HEARTBEAT", 1.0, 1.0, 1.01, 5},
              {"LOCAL_POSITION_NED", 50.0, 49.8, 0.03, 250},
              {"ATTITUDE", 50.0, 50.0, 0.03, 250},

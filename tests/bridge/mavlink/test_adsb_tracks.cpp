@@ -77,12 +77,59 @@ TEST_F(AdsbTracksTest, AnAircraftIsPlacedWithTheOrigin) {
   EXPECT_EQ(t.id, 0xABCDEFU);
   EXPECT_NEAR((t.position - Vec3(300.0, -200.0, 50.0)).norm(), 0.0, 1e-6);
   EXPECT_NEAR((t.velocity - Vec3(40.0, 0.0, -3.0)).norm(), 0.0, 1e-9);  // heading 90 is east
-  EXPECT_EQ(t.radius, 10.0);
+  EXPECT_EQ(t.radius, 10.0 + 2.0 * 25.0);
   EXPECT_NEAR(t.position_sigma, 25.0, 1e-9);  // 15 and 20, barometric
   EXPECT_EQ(t.velocity_sigma, AdsbTracks::kVelocitySigma);
   EXPECT_EQ(t.age, 0.0);
   EXPECT_EQ(tracks_.status().writers, 1);
   EXPECT_EQ(tracks_.status().messages, 1U);
+}
+
+// A light aircraft was passed 11 m from its centre: the planner's margin for what is uncertain ends at 0.8 m.
+TEST_F(AdsbTracksTest, WhatIsUncertainOfAnAircraftIsKeptClearOf) {
+  AdsbReport r = report(7, {300.0, -200.0, 50.0});
+  EXPECT_EQ(message(r).tracks.at(0).radius, 10.0 + 2.0 * std::hypot(15.0, 20.0));
+  r.emitter_type = 14;
+  r.altitude_type = 1;
+  EXPECT_EQ(message(r).tracks.at(0).radius, 5.0 + 2.0 * std::hypot(15.0, 40.0));
+}
+
+TEST_F(AdsbTracksTest, CrewedAircraftAreToldAsSuch) {
+  for (std::uint32_t type = 0; type < 20; ++type) {
+    AdsbReport r = report(7, {300.0, -200.0, 50.0});
+    r.emitter_type = type;
+    const bool crewed = type != 14 && type != 17 && type != 18 && type != 19;
+    EXPECT_EQ(message(r).aircraft.size(), crewed ? 1U : 0U) << type;
+  }
+  AdsbReport r = report(0x3C6666, {300.0, -200.0, 50.0});
+  r.since_contact = 2.0;
+  r.flags = kAllValid & ~128U;
+  clock_.time += 1.0;
+  const auto crewed = message(r).aircraft.back();
+  EXPECT_EQ(crewed.icao_address, 0x3C6666U);
+  EXPECT_EQ(crewed.stamp, r.received - 2.0);
+  EXPECT_NEAR((crewed.position - Vec3(300.0, -200.0, 50.0)).norm(), 0.0, 1e-6);  // where it was then
+  EXPECT_NEAR((crewed.velocity - Vec3(40.0, 0.0, 0.0)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(crewed.horizontal_sigma, 15.0);
+  EXPECT_EQ(crewed.vertical_sigma, 20.0);
+  EXPECT_EQ(crewed.climb_sigma, AdsbTracks::kClimbSigma);
+}
+
+TEST_F(AdsbTracksTest, TheVehiclesOwnTransponderIsNoAircraft) {
+  std::deque<AdsbReport> echo{report(0x3C6666, {0.0, 0.0, 10.0})};
+  AdsbTracks tracks(
+      [&](AdsbReport& r) {
+        if (echo.empty()) return false;
+        r = echo.front();
+        echo.pop_front();
+        return true;
+      },
+      [this] { return origin_; }, clock_, 0x3C6666);
+  TrackMessage m;
+  EXPECT_FALSE(tracks.poll(m));
+  EXPECT_EQ(tracks.status().dropped_tracks, 0U);  // nothing to be told of
+  echo.push_back(report(0x3C6667, {0.0, 0.0, 10.0}));
+  EXPECT_TRUE(tracks.poll(m));
 }
 
 TEST_F(AdsbTracksTest, AGeometricAltitudeIsLessCertain) {

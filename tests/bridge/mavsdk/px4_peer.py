@@ -69,6 +69,8 @@ class Peer:
         self.options = options
         self.link = mavutil.mavlink_connection(f"udpout:127.0.0.1:{options.port}", source_system=options.system,
                                                source_component=1, dialect="development")
+        if options.keyed:
+            self.link.setup_signing(b"the key that jink has not got....", allow_unsigned_callback=lambda *_: False)
         self.wire = Wire(self.link, options.loss, options.delay)
         self.link.mav.file = self.wire
         self.others, self.receivers = {}, {}
@@ -297,6 +299,8 @@ def main():
     parser.add_argument("--mute", type=int, nargs="*", default=[], help="commands (MAV_CMD) not to answer")
     parser.add_argument("--single-ack", action="store_true", help="one answer to DO_SET_MODE, as other versions give")
     parser.add_argument("--no-odometry", action="store_true")
+    parser.add_argument("--keyed", action="store_true", help="MAVLink signing, as PX4 1.18 with a key: signs, and takes "
+                                                             "signed messages alone")
     parser.add_argument("--loss", type=float, default=0.0, help="share of the messages that are lost, each way")
     parser.add_argument("--delay", type=float, default=0.0, help="s, of all that it sends")
     parser.add_argument("--deaf", type=int, default=0, help="how often a message or parameter is asked for in vain")

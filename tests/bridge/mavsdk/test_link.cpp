@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/doctor/vehicle_checks.hpp"
 #include "bridge/vehicle/command_tracker.hpp"
 #include "bridge/vehicle/px4.hpp"
 #include "tests/bridge/mavsdk/link_test.hpp"
@@ -25,6 +26,7 @@
 namespace {
 
 namespace px4 = jink::bridge::vehicle::px4;
+namespace doctor = jink::bridge::doctor;
 using jink::Vec3;
 using jink::bridge::base::SteadyClock;
 using jink::bridge::mavsdk::MavsdkLink;
@@ -178,6 +180,23 @@ TEST_F(MavsdkLinkTest, ACommandWithoutAnAnswerIsReported) {
   EXPECT_FALSE(arm.accepted);
   EXPECT_EQ(arm.detail, "no answer");
   EXPECT_GE(clock_.now() - asked, CommandTracker::kAnswer_s);
+}
+
+// PX4 1.18 with a key: what it says is signed, which MAVSDK takes, and what is not signed it does not take.
+TEST_F(MavsdkLinkTest, AnAutopilotThatTakesSignedMessagesAloneIsKnownByItsSilence) {
+  connect({"--keyed"});
+  ASSERT_TRUE(state_becomes([](const VehicleState& s) { return s.motion.heard(); }));
+  link_->request(Command::kHold);
+  const CommandReport report = next_report();
+  EXPECT_FALSE(report.accepted);
+  EXPECT_EQ(report.detail, "no answer, as to all else: does the autopilot take signed messages alone (jink doctor)?");
+  EXPECT_EQ(link_->counts().answers, 0U);
+  const doctor::LinkFindings heard = doctor::listen(*link_, clock_, 1.0, {});
+  std::string found;
+  for (const doctor::Check& check : doctor::inspect_link({}, heard)) {
+    if (check.name == "answers") found = std::string(doctor::to_string(check.level)) + ": " + check.remedy;
+  }
+  EXPECT_TRUE(found.starts_with("fault: with MAVLink signing")) << found;
 }
 
 TEST_F(MavsdkLinkTest, SetpointsArriveInNed) {

@@ -2,6 +2,7 @@
 // The table of hazards, row by row, and the patience with one that lasts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ const std::vector<Case>& cases() {
       {"the autopilot's failsafe flies", [](Calm& c) { c.failsafe = true; }},
       {"the autopilot has lost its position", [](Calm& c) { c.state.local_position_ok = false; }},
       {"the autopilot has lost its GPS", [](Calm& c) { c.state.gps_lost = true; }},
+      {"a crewed aircraft comes too near", [](Calm& c) { c.flight.aircraft_comes = true; }},
       {"the vehicle has left the geofence", [](Calm& c) { c.flight.outside = 1.1; }},
       {"the vehicle is above the geofence", [](Calm& c) { c.flight.above = 1.1; }},
       {"the vehicle cannot follow its setpoints", [](Calm& c) { c.flight.cannot_follow = true; }},
@@ -72,19 +74,20 @@ TEST(Hazards, EachRowIsFoundInItsSituationAlone) {
   }
 }
 
-TEST(Hazards, OnlyACriticalBatteryEndsTheFlightAtOnceAndByDefaultOnTheGround) {
+TEST(Hazards, OnlyACriticalBatteryEndsTheFlightAtOnce) {
   const config::Endings defaults;
   for (const Hazard& row : hazards()) {
     const bool battery = row.what == "the battery is critical";
+    const bool lands = battery || row.what == "a crewed aircraft comes too near";
     EXPECT_EQ(row.reaction == Hazard::Reaction::kStop, battery) << row.what;
-    EXPECT_EQ(defaults.*row.ends_in, battery ? config::EndsIn::kLand : config::EndsIn::kHold) << row.what;
+    EXPECT_EQ(defaults.*row.ends_in, lands ? config::EndsIn::kLand : config::EndsIn::kHold) << row.what;
   }
 }
 
 // Each cause of the mission's endings is that of a hazard.
 TEST(Hazards, EveryEndingOfAMissionIsOneOfAHazard) {
   using E = config::Endings;
-  for (const auto member : {&E::tracks, &E::link, &E::position, &E::battery, &E::breach, &E::planner}) {
+  for (const auto member : {&E::tracks, &E::link, &E::position, &E::battery, &E::breach, &E::traffic, &E::planner}) {
     const auto rows = hazards();
     EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Hazard& row) { return row.ends_in == member; }));
   }
