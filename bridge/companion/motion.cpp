@@ -113,7 +113,13 @@ void MotionControl::send(double now, double dt, const vehicle::VehicleState& sta
   if (!due && !new_plan_) return;
   last_sent_ = now;
   new_plan_ = false;
-  const vehicle::Setpoint setpoint = stream_.setpoint(now, heading(dt, state, towards), state.link_delay);
+  vehicle::Setpoint setpoint = stream_.setpoint(now, heading(dt, state, towards), state.link_delay);
+  // What sinks faster than its plan can stop is not asked to go under the ground.
+  const double floor = std::min(mission_.ground, state.motion.value.position.z());
+  if (setpoint.position.z() < floor) {
+    setpoint.position.z() = floor;
+    setpoint.velocity.z() = std::max(0.0, setpoint.velocity.z());
+  }
   const bool sent = link_.send(setpoint);
   reporter_.sending(now, sent);
   if (!sent) {

@@ -19,6 +19,7 @@ constexpr double kInsetMargin = 0.3;         // of the margin, likewise
 constexpr double kInsetSigmas = 2.0;         // of the estimate's position, likewise
 constexpr double kSinking = 0.7;             // m/s, of a landing: PX4's MPC_LAND_SPEED by default
 constexpr double kRejoining = 1.0;           // m/s², at most, of the way back to a plan that is kept
+constexpr double kRejoiningStep = 0.1;       // s
 constexpr double kFadeCurvature = 5.8;       // the largest of an OffsetForecast's, of an offset of 1 in a time of 1
 constexpr double kStopPeriod = 0.5;          // s, between the times at which the plan might be left for a stop
 constexpr double kLatestStop = 2.0;          // s, the last of them
@@ -29,10 +30,16 @@ constexpr double kCautious = 0.3;            // of the cruise speed, while what 
 // The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
 planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& position, const Vec3& velocity) {
   const planner::base::TimedPoint first = path.front();
-  setpoints::OffsetForecast beside{first.t, position - first.position, path.back().t - first.t,
+  setpoints::OffsetForecast beside{first.t, position - first.position, setpoints::OffsetForecast::kFade,
                                    velocity - first.velocity};
   const double way = beside.offset.norm() + setpoints::OffsetForecast::kRateFade * beside.rate.norm();
   beside.fade = std::min(beside.fade, std::sqrt(kFadeCurvature * way / kRejoining));
+  // What ends before that stays at its end meanwhile: a metre is not made good in the last tenth of a second.
+  planner::base::TimedPoint last{path.back().t, path.back().position, Vec3::Zero(), Vec3::Zero()};
+  while (last.t < first.t + beside.fade) {
+    last.t += kRejoiningStep;
+    path.push_back(last);
+  }
   return beside.added_to(std::move(path));
 }
 

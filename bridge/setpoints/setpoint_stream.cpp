@@ -68,6 +68,13 @@ planner::base::TimedPath SetpointStream::straight_stop(const planner::base::Time
   Vec3 velocity = from.velocity;
   double t = from.t;
   const double braking = deceleration(position, velocity);
+  const double lowest = std::min(from.position.z(), settings_.volume.min.z());
+  const auto stay_above = [&] {  // what is below the volume is not to go on sinking while it stops
+    if (position.z() > lowest) return;
+    position.z() = lowest;
+    velocity.z() = std::max(0.0, velocity.z());
+  };
+  stay_above();
   while (velocity.norm() > kAtRest && stop.size() < kLongestStop) {
     const double speed = velocity.norm();
     const double next_speed = std::max(0.0, speed - braking * kBrakeStep);
@@ -76,6 +83,7 @@ planner::base::TimedPath SetpointStream::straight_stop(const planner::base::Time
     position += 0.5 * (speed + next_speed) * kBrakeStep * direction;
     velocity = next_speed * direction;
     t += kBrakeStep;
+    stay_above();
   }
   stop.push_back({t, position, Vec3::Zero(), Vec3::Zero()});
   return stop;

@@ -36,7 +36,7 @@ class SetpointStream {
   /// Follows a way to rest at once, and stays at its end. Precondition: not empty.
   void brake(planner::base::TimedPath stop);
   /// The straight way to rest from there, as the deceleration allows. Where that would lead out of `volume` it is as
-  /// hard as it takes to stay inside, up to `hardest`.
+  /// hard as it takes to stay inside, up to `hardest`; below its floor it never leads.
   [[nodiscard]] planner::base::TimedPath straight_stop(const planner::base::TimedPoint& from) const;
   /// Moves all that is followed: the autopilot's estimate jumped by that, the vehicle did not move.
   void shift(const Vec3& by);

@@ -76,7 +76,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
   const bool tracks = !mission_.tracks.required ||
                       (in.flight.newest_tracks && in.now - *in.flight.newest_tracks < mission_.tracks.timeout_s);
   const bool position = state.motion.silence(in.now) < settings_.stale_state;
-  const bool ready = position && state.local_position_ok && state.landed_state_known && (state.armed || state.armable);
+  const bool falls = state.in_air && !state.armed;  // by its word: it is not armed then
+  const bool ready =
+      position && state.local_position_ok && state.landed_state_known && !falls && (state.armed || state.armable);
   waiting_for_.clear();
   if (!autopilot) {
     waiting_for_ = "an autopilot's heartbeat on " + mission_.connection;
@@ -90,9 +92,11 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     return MissingPeer::kTracks;
   }
   if (!ready) {
-    waiting_for_ = "the autopilot to be ready: " +
-                   (!state.health.empty() ? state.health
-                                          : std::string(state.landed_state_known ? "local position" : "landed state"));
+    const std::string lacks = falls                      ? "disarmed in the air, it says"
+                              : !state.health.empty()    ? state.health
+                              : state.landed_state_known ? "local position"
+                                                         : "landed state";
+    waiting_for_ = "the autopilot to be ready: " + lacks;
   } else if (mission_.heights == config::Heights::kSea && !state.origin) {
     waiting_for_ = "the local origin's height above the sea";
   } else if (state.battery == vehicle::BatteryState::kLow || state.battery == vehicle::BatteryState::kCritical) {

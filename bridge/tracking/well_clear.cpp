@@ -11,10 +11,10 @@ std::optional<double> less_than_well_clear_in(const Aircraft& aircraft, double n
   if (age > WellClear::kRemembered) return std::nullopt;
   for (double t = 0.0; t <= WellClear::kHorizon; t += kStep) {
     const Vec3 apart = aircraft.position + (age + t) * aircraft.velocity - vehicle;
-    const double beside = WellClear::kBeside + WellClear::kSigmas * aircraft.horizontal_sigma +
-                          aircraft.speed_sigma * (age + t);
-    const double vertical = WellClear::kVertical + WellClear::kSigmas * aircraft.vertical_sigma +
-                            aircraft.climb_sigma * (age + t);
+    const double beside =
+        WellClear::kBeside + WellClear::kSigmas * aircraft.horizontal_sigma + aircraft.speed_sigma * (age + t);
+    const double vertical =
+        WellClear::kVertical + WellClear::kSigmas * aircraft.vertical_sigma + aircraft.climb_sigma * (age + t);
     if (apart.head<2>().norm() < beside && std::abs(apart.z()) < vertical) return t;
   }
   return std::nullopt;

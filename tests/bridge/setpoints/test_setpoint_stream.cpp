@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace jink::bridge::setpoints {
 namespace {
@@ -356,6 +356,23 @@ TEST(SetpointStream, LearnsNothingWhenSlowHoldingOrBraking) {
   EXPECT_EQ(stream.drag(), 0.7);  // the first says nothing of how the lag grows
   stream.observe(4.1, {7.8, 0, 1}, {2, 0, 0});
   EXPECT_GT(stream.drag(), 0.7);
+}
+
+// Found by tests/fuzz/fuzz_supervisor: what sank below min_height was to stop under the ground.
+TEST(SetpointStream, AStopBelowTheVolumeSinksNoFurther) {
+  SetpointStream::Settings settings = plain();
+  settings.volume = {{-50, -50, 1}, {50, 50, 20}};
+  const SetpointStream stream(settings);
+  for (const Vec3& velocity : {Vec3(-5.8, 4.9, -0.8), Vec3(0, 0, -3)}) {
+    for (const planner::base::TimedPoint& point : stream.straight_stop({0.0, {0, 0, 0.4}, velocity, Vec3::Zero()})) {
+      EXPECT_TRUE(point.position.allFinite() && point.velocity.allFinite() && point.acceleration.allFinite());
+      EXPECT_GE(point.position.z(), 0.4);
+    }
+  }
+  double least = 2.0;  // from above it ends inside, as hard as that takes, or at the floor
+  for (const planner::base::TimedPoint& point : stream.straight_stop({0.0, {0, 0, 1.2}, {0, 0, -5}, Vec3::Zero()}))
+    least = std::min(least, point.position.z());
+  EXPECT_NEAR(least, 1.0, 0.15);
 }
 
 }  // namespace

@@ -372,5 +372,21 @@ TEST(Supervisor, InterruptWhileEngagingSaysSoWhenTheHeartbeatIsLost) {
   EXPECT_NE(flight.supervisor.reason().find("heartbeat is missing"), std::string::npos) << flight.supervisor.reason();
 }
 
+// Found by tests/fuzz/fuzz_supervisor: one that says that it is in the air and disarmed was armed there.
+TEST(Supervisor, WhatSaysThatItIsInTheAirAndDisarmedIsNotArmed) {
+  Flight flight;
+  flight.state.in_air = true;
+  flight.run(5.0);
+  EXPECT_TRUE(flight.requests.empty());
+  EXPECT_EQ(flight.supervisor.waiting_for(), "the autopilot to be ready: disarmed in the air, it says");
+  flight.state.in_air = false;
+  flight.turn();
+  flight.turn();
+  flight.state.mode = vehicle::FlightMode::kOffboard;
+  flight.state.in_air = true;  // while it is asked for
+  flight.run(5.0);
+  EXPECT_EQ(flight.asked(vehicle::Command::kArm), 0);
+}
+
 }  // namespace
 }  // namespace jink::bridge::supervisor

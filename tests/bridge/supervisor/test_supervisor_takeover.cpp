@@ -241,12 +241,10 @@ TEST(Supervisor, AFailsafeThatLandsReturnsOrHoldsIsNotInterfered) {
 TEST(Supervisor, TakesOverFromAFailsafeOfACompanionBeforeIt) {
   Flight flight;
   flight.state.mode = vehicle::FlightMode::kOffboard;
-  flight.state.armed = false;
-  flight.state.in_air = true;
-  flight.state.motion.value.position.z() = 2.0;
   flight.turn();  // engaging, with a heartbeat from before the failsafe
   flight.turn();
-  flight.state.armed = true;
+  flight.state.in_air = flight.state.armed = true;
+  flight.state.motion.value.position.z() = 2.0;
   flight.state.mode = vehicle::FlightMode::kPosition;
   flight.state.failsafe = true;
   EXPECT_EQ(flight.turn().motion, Motion::kStay);
