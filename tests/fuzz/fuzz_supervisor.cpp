@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A companion in flight, with an autopilot, a pilot, writers of tracks and clocks that do what the input says, held to
 // what must never happen: that it arms or commands on old news, streams after a pilot took over, goes while the vehicle
-// is in OFFBOARD without having asked for another mode, or sends a setpoint that is not finite, outside of the geofence,
-// under the ground or beyond the vehicle's limits. The input: one byte for the mission, then two for each event: what
-// happens, and how; between events the loop turns.
+// is in OFFBOARD without having asked for another mode, or sends a setpoint that is not finite, outside of the
+// geofence, under the ground or beyond the vehicle's limits. The input: one byte for the mission, then two for each
+// event: what happens, and how; between events the loop turns.
 #include <cmath>
 
 #include "bridge/companion/companion.hpp"
@@ -17,12 +17,12 @@ using bridge::vehicle::Command;
 using bridge::vehicle::FlightMode;
 using fuzz::require;
 
-constexpr double kFreshHeartbeat = 1.5;  // s
+constexpr double kFreshHeartbeat = 1.5;     // s
 constexpr double kVelocityTolerance = 3.0;  // m/s: the way back to a path, and what the estimate is off
 constexpr double kBraking = 2.0;            // m/s²
 constexpr double kLost = 1.2;               // m, that a vehicle may be off what it is asked for
-constexpr double kMostDrag = 1.5;        // 1/s, that is made up for
-constexpr double kTolerance = 0.3;       // m, by which what brakes beside a bound may pass it
+constexpr double kMostDrag = 1.5;           // 1/s, that is made up for
+constexpr double kTolerance = 0.3;          // m, by which what brakes beside a bound may pass it
 
 config::Mission mission_of(std::uint8_t choice) {
   config::Mission m;
@@ -181,8 +181,7 @@ class World {
         obeys_ = on;
         break;
       case 14:
-        if (!link_.requests.empty())
-          link_.reports.push_back({link_.requests.back(), on, on ? "" : "denied"});
+        if (!link_.requests.empty()) link_.reports.push_back({link_.requests.back(), on, on ? "" : "denied"});
         break;
       case 15:
         link_.works = on;
@@ -255,8 +254,10 @@ class World {
     // What is outside, or will be before it can stop, is asked to be no farther outside.
     const Vec3& p = link_.telemetry.motion.value.position;
     const planner::base::Box& fence = mission_.geofence;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double beyond = std::max(fence.min[axis] - setpoint.position[axis], setpoint.position[axis] - fence.max[axis]);
+    const bool known = link_.telemetry.motion.silence(now_) <= 0.2;
+    for (Eigen::Index axis = 0; axis < 3 && known; ++axis) {
+      const double beyond =
+          std::max(fence.min[axis] - setpoint.position[axis], setpoint.position[axis] - fence.max[axis]);
       const double own = std::max(fence.min[axis] - p[axis], p[axis] - fence.max[axis]);
       const double stops = std::max(0.0, own + fastest_ * fastest_ / (2.0 * kBraking)) + (own > 0.0 ? kLost : 0.0);
       require(beyond <= stops + kTolerance, "a setpoint outside of the geofence");
