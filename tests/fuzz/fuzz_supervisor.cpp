@@ -251,7 +251,8 @@ class World {
     require(setpoint.position.allFinite() && setpoint.velocity.allFinite() && setpoint.acceleration.allFinite() &&
                 std::isfinite(setpoint.yaw),
             "a setpoint that is not finite");
-    // What is outside, or will be before it can stop, is asked to be no farther outside.
+    // What is outside, or will be before it can stop, is asked to be no farther outside; the reference may be beside
+    // the vehicle, which the wind holds there.
     const Vec3& p = link_.telemetry.motion.value.position;
     const planner::base::Box& fence = mission_.geofence;
     const bool known = link_.telemetry.motion.silence(now_) <= 0.2;
@@ -259,8 +260,8 @@ class World {
       const double beyond =
           std::max(fence.min[axis] - setpoint.position[axis], setpoint.position[axis] - fence.max[axis]);
       const double own = std::max(fence.min[axis] - p[axis], p[axis] - fence.max[axis]);
-      const double stops = std::max(0.0, own + fastest_ * fastest_ / (2.0 * kBraking)) + (own > 0.0 ? kLost : 0.0);
-      require(beyond <= stops + kTolerance, "a setpoint outside of the geofence");
+      const double stops = std::max(0.0, own + fastest_ * fastest_ / (2.0 * kBraking));
+      require(beyond <= stops + kLost + kTolerance, "a setpoint outside of the geofence");
     }
     require(setpoint.position.z() >= std::min(0.0, p.z()) - kTolerance, "a setpoint under the ground");
     // A stop begins at the vehicle's own velocity, which the wind may have made.
