@@ -137,8 +137,14 @@ void read_writers(const Value& value, bool sources_given, TrackPolicy& tracks) {
                  std::string(kTrackTopics[i]) + "'");
     }
     if (!names) continue;
-    for (const Value& name : names->list(1, kMostWriters))
-      tracks.writers.push_back({static_cast<TrackTopic>(i), name.text()});
+    for (const Value& name : names->list(1, kMostWriters)) {
+      const TrackWriter writer{static_cast<TrackTopic>(i), name.text()};
+      const auto same = [&](const TrackWriter& w) {
+        return w.topic == writer.topic && w.participant == writer.participant;
+      };
+      if (std::any_of(tracks.writers.begin(), tracks.writers.end(), same)) name.fail("is named twice");
+      tracks.writers.push_back(writer);
+    }
   }
 }
 
@@ -166,7 +172,10 @@ TrackPolicy read_tracks(const Value& value) {
   const auto sources = map.find("sources");
   if (sources) tracks.sources = read_sources(*sources);
   if (const auto name = map.find("namespace")) tracks.name_space = read_namespace(*name);
-  if (const auto writers = map.find("writers")) read_writers(*writers, sources.has_value(), tracks);
+  if (const auto writers = map.find("writers")) {
+    read_writers(*writers, sources.has_value(), tracks);
+    if (!tracks.required) map.at("required", "").fail("is at odds with writers, each of which is needed");
+  }
   if (const auto origins = map.find("origins")) {
     const Map topics(*origins, {kTrackTopics.begin(), kTrackTopics.end()});
     for (std::size_t i = 0; i < kTrackTopics.size(); ++i) {

@@ -122,8 +122,6 @@ void Companion::place_mission() {
       misplaced_ = raised_.back() + ", above the geofence's top";
     }
   }
-  if (const std::string danger = supervisor::danger(mission_, intake_.state().failsafe_parameters); !danger.empty())
-    misplaced_ = danger;
   route_.place(mission_.waypoints);
   motion_.place();
 }
@@ -135,8 +133,8 @@ void Companion::tell_beginning(double now) {
     reporter_.event(now, "ground", "at " + base::metres(mission_.ground) + " in the autopilot's local frame");
   }
   for (const std::string& text : raised_) reporter_.event(now, "raised", text);
-  if (!intake_.state().failsafe_parameters.offboard_loss)
-    reporter_.event(now, "parameters", "not told: what the autopilot does without setpoints is not known");
+  if (!supervisor::told(mission_, intake_.state().failsafe_parameters))
+    reporter_.event(now, "parameters", "not told: what the autopilot does by itself is not known");
 }
 
 void Companion::take_tracks(double now) {
@@ -168,6 +166,7 @@ supervisor::FlightContext Companion::context(double now) {
   context.lost_writers = intake_.lost_writers(now, supervisor_.flight_began());
   context.unsent_for = motion_.unsent_for(now);
   context.misplaced = misplaced_;
+  if (!supervisor_.flight_began()) context.danger = supervisor::danger(mission_, state.failsafe_parameters);
   context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;
   context.low = state.motion.value.position.z() < mission_.min_height - kLow;
   const bool may_take_off =

@@ -9,6 +9,7 @@
 namespace jink::bridge::companion {
 namespace {
 
+constexpr std::size_t kMostWriters = 1000;
 constexpr int kMostMessages = 64;     // of tracks, in a turn
 constexpr double kMissedAfter = 0.5;  // of the time that tracks coast, of silence of a writer
 
@@ -42,18 +43,21 @@ bool Intake::take_tracks(double now) {
   bool any = false;
   // A turn takes no more than so many: a writer at full speed must not keep the setpoints waiting.
   for (int taken = 0; taken < kMostMessages && tracks_.poll(message); ++taken) {
-    if (tracking::elsewhere(message, mission_.geofence)) {
+    // Who has told of something near sees something far away; and in flight nothing is left out for that.
+    const bool elsewhere = tracking::elsewhere(message, mission_.geofence);
+    if (elsewhere && flight_began_ > now && !at_home_.contains(message.writer)) {
       ++elsewhere_;
       continue;
     }
+    if (!elsewhere && !message.tracks.empty() && at_home_.size() < kMostWriters) at_home_.insert(message.writer);
     table_.ingest(message);
     if (!message.aircraft.empty()) aircraft_ = std::move(message.aircraft);
     any = true;
   }
   // Sooner than that is a hazard: by then the tracks would be forgotten.
   const double missed_after = kMissedAfter * mission_.tracks.coast_s;
-  table_.miss(mission_.tracks.writers.empty() ? table_.lost_writers(now, missed_after, flight_began_) > 0
-                                              : now - newest_tracks().value_or(now) > missed_after);
+  table_.miss(table_.lost_writers(now, missed_after, flight_began_) > 0 ||
+              now - newest_tracks().value_or(now) > missed_after);
   if (any && state_.motion.silence(now) <= settings_.companion.stale_state)
     table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
   return any;
@@ -94,7 +98,7 @@ std::optional<Intake::Approach> Intake::approach(double now) const {
 
 int Intake::lost_writers(double now, std::optional<double> flight_began) {
   flight_began_ = flight_began.value_or(planner::base::kInfinity);
-  return mission_.tracks.writers.empty() ? table_.lost_writers(now, mission_.tracks.timeout_s, flight_began_) : 0;
+  return table_.lost_writers(now, mission_.tracks.timeout_s, flight_began_);
 }
 
 }  // namespace jink::bridge::companion

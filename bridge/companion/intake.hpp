@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,8 @@ class Intake {
   [[nodiscard]] std::optional<double> newest_tracks() const;
   /// The first that the mission names and that is silent; empty: there is none.
   [[nodiscard]] std::string silent_writer(double now) const;
-  /// Writers that watched in this flight, and watch no more, nor anybody in their place; 0 where the mission names who
-  /// is to watch. `flight_began`: none: it has not.
+  /// Writers that watched in this flight, and watch no more, nor anybody in their place. `flight_began`: none: it has
+  /// not.
   [[nodiscard]] int lost_writers(double now, std::optional<double> flight_began);
   /// The crewed aircraft that is the first to come to less than well clear, and in how many seconds.
   struct Approach {
@@ -57,7 +58,7 @@ class Intake {
     double seconds = 0.0;
   };
   [[nodiscard]] std::optional<Approach> approach(double now) const;
-  /// Messages of tracks that are all farther out of the geofence than it is wide: of another frame.
+  /// Messages refused as `tracking::elsewhere`: before the flight, of writers that told of nothing near.
   [[nodiscard]] std::uint64_t elsewhere() const { return elsewhere_; }
 
  private:
@@ -74,6 +75,7 @@ class Intake {
   std::optional<double> ground_;
   double flight_began_ = planner::base::kInfinity;
   std::uint64_t elsewhere_ = 0;
+  std::set<std::uint64_t> at_home_;           // writers that told of something near
   std::vector<tracking::Aircraft> aircraft_;  // of the newest message that had some
 };
 

@@ -47,6 +47,7 @@ std::optional<StatusText> text_of(std::string_view name, const std::string& deta
   if (name == "battery" && (detail == "low" || detail == "critical"))
     return StatusText{detail == "low" ? Severity::kWarning : Severity::kCritical,
                       std::string(kName) + "battery " + detail};
+  if (name == "request" && detail == "return") return StatusText{Severity::kWarning, std::string(kName) + "RETURN"};
   if (name == "waiting" && detail.starts_with("an autopilot's heartbeat")) return std::nullopt;  // nobody would hear it
   const auto* const found =
       std::find_if(kEvents.begin(), kEvents.end(), [&](const auto& e) { return e.first == name; });

@@ -124,7 +124,8 @@ void FlightReporter::stuck(double now, bool stuck) {
 }
 
 void FlightReporter::aircraft(double now, const std::optional<Intake::Approach>& approach) {
-  if (!changed(said_.aircraft, approach ? approach->icao_address : 0U) || !approach) return;
+  if (!approach) said_.aircraft.clear();
+  if (!approach || !said_.aircraft.insert(approach->icao_address).second) return;
   std::array<char, 16> address{};
   std::snprintf(address.data(), address.size(), "%06X", approach->icao_address);
   event(now, "aircraft",

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -113,7 +114,7 @@ class FlightReporter {
     tracking::TrackSourceStatus sources;
     tracking::TrackTableCounts table;
     std::uint64_t elsewhere = 0;
-    std::uint32_t aircraft = 0;
+    std::set<std::uint32_t> aircraft;
     int own_tracks = 0;
     std::optional<double> at;
   };

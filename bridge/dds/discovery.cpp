@@ -52,7 +52,7 @@ std::vector<DdsEndpoint> DdsDiscovery::endpoints() const {
   std::vector<DdsEndpoint> all;
   for (const auto& [guid, endpoint] : endpoints_) {
     all.push_back(endpoint);
-    all.back().participant = name_of(guid.guidPrefix);
+    all.back().participant = cdr::printable(name_of(guid.guidPrefix));
   }
   return all;
 }

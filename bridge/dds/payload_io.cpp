@@ -129,7 +129,7 @@ std::string ParticipantNames::name_of(const Prefix& prefix) const {
 std::vector<std::string> ParticipantNames::all() const {
   const std::scoped_lock lock(mutex_);
   std::vector<std::string> names;
-  for (const auto& [prefix, name] : names_) names.push_back(name);
+  for (const auto& [prefix, name] : names_) names.push_back(cdr::printable(name));
   return names;
 }
 
@@ -142,7 +142,7 @@ void ParticipantNames::on_participant_discovery(dds::DomainParticipant* own, rtp
     names_.erase(prefix);
     return;
   }
-  const std::string name = cdr::printable(info.info.m_participantName.to_string());
+  const std::string name = info.info.m_participantName.to_string();
   names_[prefix] = name.empty() ? "?" : name;
 }
 

@@ -56,9 +56,9 @@ class ParticipantNames : public dds::DomainParticipantListener {
  public:
   using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
-  /// "?" where it has none or is not known.
+  /// As it is told: not for the terminal. "?" where it has none or is not known.
   [[nodiscard]] std::string name_of(const Prefix& prefix) const;
-  /// Of all others.
+  /// Of all others, printable.
   [[nodiscard]] std::vector<std::string> all() const;
 
   void on_participant_discovery(dds::DomainParticipant* own,

@@ -81,7 +81,7 @@ class DdsTrackReader::Impl {
       const std::string name = names_.name_of(writer.participant);
       const auto allowed = options_.writers.find(name);
       if (allowed == options_.writers.end())
-        return inbox_.refuse("tracks of '" + name + "', whom the mission does not name");
+        return inbox_.refuse("tracks of '" + cdr::printable(name) + "', whom the mission does not name");
       named = allowed->second;
     }
     std::optional<tracking::DecodedTracks> message = topic_.decode(payload);

@@ -212,17 +212,19 @@ class Inspector {
     std::set<std::string> heard;
     for (const auto& participant : probe.seen().participants) heard.insert(discovery_.name_of(participant));
     std::set<std::string> strangers = heard;
+    std::vector<std::string> shown;
+    for (const std::string& name : heard) shown.push_back(printable_long(name));
     for (const config::TrackWriter& writer : wanted) {
       if (writer.topic != topic) continue;
       strangers.erase(writer.participant);
       if (heard.contains(writer.participant)) continue;
-      checks.push_back(
-          {Check::Level::kMissing, probe.topic(), "nothing from '" + writer.participant + "'",
-           "start it, or correct tracks.writers: " +
-               (heard.empty() ? "nobody writes" : "who writes is " + joined({heard.begin(), heard.end()}))});
+      checks.push_back({Check::Level::kMissing, probe.topic(), "nothing from '" + writer.participant + "'",
+                        "start it, or correct tracks.writers: " +
+                            (heard.empty() ? "nobody writes" : "who writes is " + joined(shown))});
     }
     for (const std::string& stranger : strangers) {
-      checks.push_back({Check::Level::kWarning, probe.topic(), "also from '" + stranger + "', which is not heard",
+      checks.push_back({Check::Level::kWarning, probe.topic(),
+                        "also from '" + cdr::printable(stranger) + "', which is not heard",
                         "name it in tracks.writers, or find out what it is"});
     }
   }

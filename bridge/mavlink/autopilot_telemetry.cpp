@@ -43,6 +43,8 @@ void AutopilotTelemetry::restarted() {
   position_boot_ms_.reset();
   state_.origin.reset();
   state_.home_height.reset();
+  state_.failsafe_parameters = {};
+  parameter_requests_ = 0;
   state_.armable = false;
   state_.landed_state_known = false;
   sys_status_heard_ = false;
@@ -182,8 +184,9 @@ void AutopilotTelemetry::on(const vehicle::px4::Parameter& parameter) {
   }
 }
 
-std::vector<std::string> AutopilotTelemetry::untold_parameters() const {
+std::vector<std::string> AutopilotTelemetry::parameters_to_ask() {
   std::vector<std::string> names;
+  if (++parameter_requests_ > kParameterRequests) return names;
   for (const auto& [name, member] : kFailsafeParameters) {
     if (!(state_.failsafe_parameters.*member)) names.emplace_back(name);
   }

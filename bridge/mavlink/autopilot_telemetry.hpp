@@ -59,6 +59,7 @@ class AutopilotTelemetry {
   static constexpr double kModeMaxAge_s = 1.2;  ///< of CURRENT_MODE: then the heartbeat's mode counts
   static constexpr double kOvertaken_s = 0.4;   ///< by no more; PX4 tells the mode twice a second
   static constexpr std::size_t kNotices = 64;
+  static constexpr int kParameterRequests = 5;  ///< an autopilot may not know them
 
   AutopilotTelemetry() { state_.landed_state_known = false; }
 
@@ -93,8 +94,9 @@ class AutopilotTelemetry {
   [[nodiscard]] double heartbeat_stamp() const { return state_.heartbeat_stamp; }
   [[nodiscard]] bool origin_known() const { return state_.origin.has_value(); }
   [[nodiscard]] bool home_known() const { return state_.home_height.has_value(); }
-  /// Of VehicleState::failsafe_parameters.
-  [[nodiscard]] std::vector<std::string> untold_parameters() const;
+  /// Those of VehicleState::failsafe_parameters that are to be asked for now: what is not told, kParameterRequests
+  /// times.
+  [[nodiscard]] std::vector<std::string> parameters_to_ask();
 
   /// At most kNotices wait; the oldest go.
   void notice(std::string name, std::string detail);
@@ -111,6 +113,7 @@ class AutopilotTelemetry {
   std::optional<CurrentMode> mode_before_;
   double mode_changed_at_ = base::kNever;
   double mode_at_ = base::kNever;  // when it was told
+  int parameter_requests_ = 0;
   vehicle::EstimateResets resets_;
   vehicle::LinkDelay delay_;
   std::optional<std::uint32_t> boot_ms_;  // newest of LOCAL_POSITION_NED and ATTITUDE

@@ -143,7 +143,6 @@ class MavsdkLink::Impl {
   std::array<std::uint64_t, kStreams> heard_{};
   std::array<std::uint64_t, kStreams> at_heartbeat_{};  // heard_ at the heartbeat before
   std::array<int, kStreams> requests_{};                // of what was never heard
-  int parameter_requests_ = 0;
   double rates_since_ = 0.0;
   std::set<std::uint32_t> other_autopilots_;
   std::deque<mavlink::AdsbReport> adsb_;

@@ -104,7 +104,7 @@ void MavsdkLink::Impl::on(double now, const Sender& sender, const mavlink::Heart
     want_origin = !telemetry_.origin_known();
     want_home = !telemetry_.home_known();
     want_version = !telemetry_.info().version;
-    if (ready_ && ++parameter_requests_ <= kRequests) want_parameters = telemetry_.untold_parameters();
+    if (ready_) want_parameters = telemetry_.parameters_to_ask();
   }
   if (!ready_) return;
   request_streams(slow);

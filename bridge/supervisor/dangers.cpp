@@ -6,6 +6,19 @@
 #include "bridge/base/text.hpp"
 
 namespace jink::bridge::supervisor {
+namespace {
+
+bool returns(const config::Endings& e) {
+  const auto choices = {e.tracks, e.link, e.battery, e.breach, e.traffic, e.planner};
+  return std::find(choices.begin(), choices.end(), config::EndsIn::kReturn) != choices.end();
+}
+
+}  // namespace
+
+// GF_ACTION is not waited for: not every autopilot has it.
+bool told(const config::Mission& mission, const vehicle::FailsafeParameters& parameters) {
+  return parameters.offboard_loss && (parameters.return_height || !returns(mission.endings));
+}
 
 std::string danger(const config::Mission& mission, const vehicle::FailsafeParameters& parameters) {
   const config::Endings& endings = mission.endings;
@@ -19,11 +32,9 @@ std::string danger(const config::Mission& mission, const vehicle::FailsafeParame
       return "the autopilot cuts its motors out of its geofence (GF_ACTION 4): set 2 (hold), or let the mission's "
              "endings accept motors_cut";
   }
-  const auto choices = {endings.tracks, endings.link,    endings.battery,
-                        endings.breach, endings.traffic, endings.planner};
-  const bool returns = std::find(choices.begin(), choices.end(), config::EndsIn::kReturn) != choices.end();
   const double ceiling = mission.geofence.max.z() - mission.ground;
-  if (returns && !endings.return_above_fence && parameters.return_height && *parameters.return_height > ceiling) {
+  if (returns(endings) && !endings.return_above_fence && parameters.return_height &&
+      *parameters.return_height > ceiling) {
     return "RETURN climbs to " + base::metres(*parameters.return_height) + " (RTL_RETURN_ALT), the geofence ends at " +
            base::metres(ceiling) + ": lower it, or let the mission's endings accept return_above_fence";
   }

@@ -13,4 +13,7 @@ namespace jink::bridge::supervisor {
 /// (Endings). `mission` in the local frame, see in_local_frame. Facts: PX4's parameter reference, 1.17.
 [[nodiscard]] std::string danger(const config::Mission& mission, const vehicle::FailsafeParameters& parameters);
 
+/// The parameters that such a mission needs to be judged by are told.
+[[nodiscard]] bool told(const config::Mission& mission, const vehicle::FailsafeParameters& parameters);
+
 }  // namespace jink::bridge::supervisor

@@ -83,6 +83,7 @@ struct Landing {
   Ending ending;
   bool forced = false;  ///< goes on whoever stops the flight
   bool leave = false;   ///< that was tried: the flight is over once the autopilot lands
+  bool begun = false;   ///< the autopilot has been in LAND
   CommandRequest request = {};
 };
 struct Done {

@@ -28,6 +28,7 @@ struct FlightContext {
   int lost_writers = 0;         ///< writers of tracks that were live in this flight and are silent, not replaced
   double unsent_for = 0.0;      ///< s, for which setpoints could not be handed to the transport
   std::string misplaced;        ///< why the mission cannot be flown from where the vehicle is; empty: it can
+  std::string danger{};         ///< why it is not to be flown with this autopilot, see danger(); empty: it may be
   bool ground_known = true;     ///< its height, if the mission counts from it
   bool low = false;             ///< clearly under min_height
   double outside = 0.0;         ///< m, beside or under the geofence, of a vehicle that was inside

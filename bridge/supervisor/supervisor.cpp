@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bridge/base/text.hpp"
+#include "bridge/supervisor/dangers.hpp"
 
 namespace jink::bridge::supervisor {
 namespace {
@@ -125,7 +126,7 @@ Decision Supervisor::step(Waiting& phase, const Input& in) {
   if (!phase.heard_since && absent != MissingPeer::kAutopilot) phase.heard_since = in.now;
   if (waiting_for_.empty() && mission_.system_id == 0 && !in.state.in_air && in.now - *phase.heard_since < kOthersTime)
     waiting_for_ = "other autopilots to speak up, as the mission names none (system_id)";
-  const bool parameters_known = in.state.failsafe_parameters.offboard_loss.has_value();
+  const bool parameters_known = told(mission_, in.state.failsafe_parameters);
   if (waiting_for_.empty() && !(in.flight.ground_known && parameters_known)) {
     if (!phase.ready_since) phase.ready_since = in.now;
     if (in.now - *phase.ready_since < kToldWithin) {
@@ -134,15 +135,15 @@ Decision Supervisor::step(Waiting& phase, const Input& in) {
     }
   }
   if (waiting_for_.empty()) {
-    if (!in.flight.misplaced.empty()) {
-      abort(in.flight.misplaced);
+    if (const std::string& why = in.flight.danger.empty() ? in.flight.misplaced : in.flight.danger; !why.empty()) {
+      abort(why);
       return {};
     }
     mode_changes_.engage(in.state);
     phase_ = Engaging{};
     return {Motion::kStay, {}};
   }
-  if (!phase.since || absent != phase.absent) {
+  if (!phase.since || absent != phase.absent || in.flight.aircraft_comes) {  // which passes
     phase.absent = absent;
     phase.since = in.now;
   }
@@ -164,6 +165,10 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   }
   if (std::string why = ambiguity(state); !why.empty()) {
     stop(now, Outcome::kAborted, std::move(why));
+    return decision;
+  }
+  if (!flight.danger.empty()) {  // told late
+    stop(now, Outcome::kAborted, flight.danger);
     return decision;
   }
   if (phase.request.exhausted(now, state)) {
@@ -207,7 +212,9 @@ void Supervisor::stop_for_hazard(const Input& in) {
   if (hazard == nullptr) return;
   if (phase() == Phase::kClimbing || phase() == Phase::kFlying)
     stop(in.now, Outcome::kAborted, std::string(hazard->what));
-  if (auto* stopping = std::get_if<Stopping>(&phase_)) stopping->then = mission_.endings.*hazard->ends_in;
+  auto* stopping = std::get_if<Stopping>(&phase_);
+  if (stopping != nullptr && stopping->then != config::EndsIn::kLand)
+    stopping->then = mission_.endings.*hazard->ends_in;
 }
 
 bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> following_since) {
@@ -238,7 +245,7 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
   const bool sure = in.state.motion.silence(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
   if (sure && in.flight.at_target && !phase.arrived) phase.arrived = in.now;
   if (sure && phase.arrived && in.flight.at_end && !phase.at_end) phase.at_end = in.now;
-  if (sure && phase.at_end && in.flight.at_end && !in.flight.leaves_end) {
+  if (sure && phase.at_end && in.flight.at_end && !in.flight.leaves_end && !in.flight.aircraft_comes) {
     hazard_.clear();
     const double held = in.now - *phase.at_end;
     Ending ending{Outcome::kReached, "target reached" + (held > 0.0 ? ", free after " + base::seconds(held) : ""), {}};
@@ -253,7 +260,8 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
     if (phase.arrived) {
       stop(in.now, Outcome::kReached, "target reached, but it did not stay free within the time limit");
     } else {
-      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
+      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached",
+           in.flight.aircraft_comes ? mission_.endings.traffic : config::EndsIn::kHold);
     }
     return {Motion::kBrake, {}};
   }

@@ -85,6 +85,8 @@ Decision Supervisor::step(Stopping& phase, const Input& in) {
   const double stopping = in.now - phase.since;
   const bool stopped = !in.state.in_air || stopping > kLongestStop || (in.flight.at_rest && stopping > kShortestStop);
   if (!stopped) return {Motion::kBrake, {}};
+  const bool lost = !in.state.local_position_ok || in.state.gps_lost;  // RETURN needs a position
+  if (phase.then == config::EndsIn::kReturn && lost) phase.then = config::EndsIn::kLand;
   if (phase.then == config::EndsIn::kLand && in.state.armed) {
     phase_ = Landing{in.now, std::move(phase.ending), /*forced=*/true};
   } else {
@@ -173,13 +175,14 @@ Decision Supervisor::step(Landing& phase, const Input& in) {
     return {};
   }
   if (state.mode == vehicle::FlightMode::kLand) {
+    phase.begun = true;
     const bool endless = !phase.leave && now - phase.since > kLandingTimeout;
     if (endless) fail("the landing did not end");
     if (endless || phase.leave) finish(std::move(phase.ending));
     return {};
   }
   // It has landed: with its motors PX4 leaves LAND for the mode before, and the heartbeat says so a second later.
-  const bool touched_down = phase.request.asked() && !state.in_air && now - phase.since <= kLandingTimeout;
+  const bool touched_down = phase.begun && !state.in_air && now - phase.since <= kLandingTimeout;
   if (touched_down && state.mode == vehicle::FlightMode::kOffboard) return {};
   if (state.mode != vehicle::FlightMode::kOffboard) {
     fail("the landing was taken over: " + named(state.mode));

@@ -130,7 +130,7 @@ TEST(LoadMission, ReadsWhoseTracksAreHeardAndWhereTheirFrameIs) {
   const Folder folder;
   const auto load = [&](const std::string& tracks) {
     std::string text = kValidMission;
-    text.replace(text.find("coast_s: 0.5"), 12, tracks);
+    text.replace(text.find("required: false"), 15, tracks);
     return load_mission(folder.write("m.yaml", text)).tracks;
   };
   TrackPolicy tracks = load("namespace: uav_1/sense, writers: {jink: [front, rear], autoware: [/perception]}");
@@ -272,6 +272,9 @@ TEST(LoadMission, RefusesBadValues) {
       {"time_limit: 120", "endings: {accept: [all]}", 12, "endings.accept[0]", "all", "is not one of motors_cut"},
       {"coast_s: 0.5", "namespace: /uav", 11, "tracks.namespace", "/uav", "is not a namespace"},
       {"coast_s: 0.5", "writers: {jink: []}", 11, "tracks.writers.jink", "[]", "elements in [1, 100]"},
+      {"required: false, timeout_s: 1.5, coast_s: 0.5", "writers: {jink: [a, a]}", 11, "tracks.writers.jink[1]", "a",
+       "is named twice"},
+      {"coast_s: 0.5", "writers: {jink: [a]}", 11, "tracks.required", "false", "is at odds with writers"},
       {"coast_s: 0.5", "writers: {adsb: [a]}", 11, "tracks.writers.adsb", "", "jink, autoware"},
       {"coast_s: 0.5", "sources: [jink, autoware], writers: {jink: [a]}", 11, "tracks.writers", "", "have 'autoware'"},
       {"coast_s: 0.5", "sources: [jink], writers: {autoware: [a]}", 11, "tracks.writers", "", "have 'jink'"},

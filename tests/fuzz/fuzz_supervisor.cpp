@@ -114,7 +114,8 @@ class World {
     for (std::size_t i = sent; i < link_.sent.size(); ++i) check_setpoint(link_.sent[i]);
     if (!on) check_end();
     obey(asked);
-    fly(sent, dt);
+    take_setpoint(sent);
+    for (double left = dt; left > 1e-9; left -= kStep) fly(std::min(left, kStep));
     if (link_.sent.size() > 4096) link_.sent.clear();
     return on;
   }
@@ -290,13 +291,16 @@ class World {
     }
   }
 
-  void fly(std::size_t from, double dt) {
+  void take_setpoint(std::size_t from) {
+    if (link_.sent.size() == from || true_mode_ != FlightMode::kOffboard || !true_armed_) return;
+    target_ = link_.sent.back();
+    if (target_.position.z() > 0.2) link_.telemetry.in_air = true;
+  }
+
+  void fly(double dt) {
     auto& state = link_.telemetry;
     auto& motion = state.motion.value;
-    if (link_.sent.size() > from && true_mode_ == FlightMode::kOffboard && true_armed_) {
-      target_ = link_.sent.back();
-      if (target_.position.z() > 0.2) state.in_air = true;
-    } else if (true_mode_ != FlightMode::kOffboard) {  // stands still, or sinks
+    if (true_mode_ != FlightMode::kOffboard) {  // stands still, or sinks
       target_ = {motion.position, Vec3::Zero(), Vec3::Zero(), 0.0};
       if (true_mode_ == FlightMode::kLand || true_mode_ == FlightMode::kAltitude) target_.velocity.z() = -0.7;
     }
@@ -316,6 +320,7 @@ class World {
   }
 
   static constexpr double kHardest = 8.0;  // m/s²
+  static constexpr double kStep = 0.02;    // s
 
   config::Mission mission_;
   bridge::testing::FakeLink link_;

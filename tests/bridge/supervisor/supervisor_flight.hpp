@@ -30,7 +30,7 @@ struct Flight {
     state.mode = vehicle::FlightMode::kHold;
     state.armable = true;
     state.local_position_ok = true;
-    state.failsafe_parameters.offboard_loss = 0.0;
+    state.failsafe_parameters = {0.0, 2.0, 30.0};
   }
 
   /// One turn; what was frozen keeps its stamp.

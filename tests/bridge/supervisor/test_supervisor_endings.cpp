@@ -162,6 +162,45 @@ TEST(Supervisor, ABatteryThatEndsBringsTheVehicleHomeWhereTheMissionSaysSo) {
   EXPECT_EQ(flight.asked(vehicle::Command::kLand), 0);
 }
 
+// Without a position RETURN cannot be flown; and a landing that is decided stays one.
+TEST(Supervisor, ReturnWithoutAPositionAndAnotherEndingAfterALandingAreLandings) {
+  config::Mission m = Flight::mission();
+  m.endings.planner = config::EndsIn::kReturn;
+  m.endings.battery = config::EndsIn::kReturn;
+  m.endings.tracks = config::EndsIn::kLand;
+  Flight blind(m);
+  blind.fly().context.at_rest = true;
+  blind.supervisor.stop(blind.now, Outcome::kAborted, "the planner failed", m.endings.planner);
+  blind.state.gps_lost = true;
+  blind.run(1.0);
+  EXPECT_EQ(blind.requests.back(), vehicle::Command::kLand);
+  Flight landing(m);
+  landing.fly().supervisor.stop(landing.now, Outcome::kAborted, "stale", m.endings.tracks);
+  landing.state.battery = vehicle::BatteryState::kCritical;
+  landing.context.at_rest = true;
+  landing.run(1.0);
+  EXPECT_EQ(landing.requests.back(), vehicle::Command::kLand);
+}
+
+TEST(Supervisor, ATargetIsNotHeldInWhereACrewedAircraftComes) {
+  Flight flight;
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.context.aircraft_comes = true;
+  flight.context.at_rest = true;
+  flight.run(5.0);
+  EXPECT_EQ(flight.requests.back(), vehicle::Command::kLand);
+}
+
+// Asked for before the autopilot has told that it is in the air, and lost.
+TEST(Supervisor, ALandingThatWasNotHeardIsAskedForAgain) {
+  config::Mission m = Flight::mission();
+  m.endings.traffic = config::EndsIn::kLand;
+  Flight flight(m);
+  flight.climb().context.aircraft_comes = true;
+  flight.run(7.0);
+  EXPECT_GE(flight.asked(vehicle::Command::kLand), 2);
+}
+
 TEST(Supervisor, AnAutopilotThatTellsNoParametersIsWaitedForAWhile) {
   Flight flight;
   flight.state.failsafe_parameters.offboard_loss.reset();

@@ -388,5 +388,38 @@ TEST(Supervisor, WhatSaysThatItIsInTheAirAndDisarmedIsNotArmed) {
   EXPECT_EQ(flight.asked(vehicle::Command::kArm), 0);
 }
 
+TEST(Supervisor, ADangerThatIsToldLateIsNotArmedWith) {
+  Flight flight;
+  flight.engage();
+  flight.context.danger = "RETURN climbs";
+  flight.state.mode = vehicle::FlightMode::kOffboard;
+  flight.run(2.0);
+  EXPECT_EQ(flight.asked(vehicle::Command::kArm), 0);
+  EXPECT_EQ(flight.supervisor.reason(), "RETURN climbs");
+}
+
+TEST(Supervisor, AMissionThatReturnsWaitsForTheHeightOfThat) {
+  config::Mission m = Flight::mission();
+  m.endings.battery = config::EndsIn::kReturn;
+  Flight flight(m);
+  flight.state.failsafe_parameters.return_height.reset();
+  flight.run(2.0);
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kWaiting);
+  flight.state.failsafe_parameters.return_height = 30.0;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
+}
+
+// A minute until it is there, and then it has to pass.
+TEST(Supervisor, ACrewedAircraftIsWaitedForAsLongAsItTakes) {
+  Flight flight;
+  flight.context.aircraft_comes = true;
+  flight.run(100.0);
+  EXPECT_EQ(flight.supervisor.waiting_for(), "a crewed aircraft to pass");
+  flight.context.aircraft_comes = false;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.phase(), Phase::kEngaging);
+}
+
 }  // namespace
 }  // namespace jink::bridge::supervisor
