@@ -7,11 +7,6 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}; shift || true
 # shellcheck disable=SC2086
 JINK_GROUPS="lab test" tools/build.sh "$preset" ${JINK_TARGETS:-}
-if [ "$preset" = tsan ]; then export TSAN_OPTIONS="suppressions=$PWD/tests/support/tsan.supp ${TSAN_OPTIONS:-}"; fi
-if [ "$preset" = asan ]; then
-  # Fast DDS 2.9 deletes the statistics part of its writers through a base of another size.
-  export ASAN_OPTIONS="new_delete_type_mismatch=0 ${ASAN_OPTIONS:-}"
-fi
 # One more than cores: the system tests mostly wait.
 log=build/$preset/Testing/Temporary/LastTest.log
 ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@" || {

@@ -17,15 +17,6 @@
 #include <stdexcept>
 #include <utility>
 
-#if defined(__SANITIZE_ADDRESS__)
-// Debian's Fast DDS 2.9.1 deletes its own statistics object through a base without a virtual destructor whenever a
-// writer goes. Only that check of AddressSanitizer is switched off, and only in its builds.
-extern "C" const char* __asan_default_options();  // NOLINT: the sanitizer's name
-extern "C" const char* __asan_default_options() {
-  return "new_delete_type_mismatch=0";
-}  // NOLINT
-#endif
-
 namespace jink::bridge::dds {
 
 namespace {
