@@ -12,6 +12,17 @@ from flight import CONFIG, Arena, check, interrupt, main, wait, wait_until
 from ground_station import set_parameter
 
 CROSSING = CONFIG / "scenarios" / "crossing.yaml"
+ASIDE = [{"radius": 0.4, "position": [5, -6, 1.5]}]
+
+
+def crossing(arena, **changes):
+    """The scenario, changed, as a file."""
+    scenario = yaml.safe_load(CROSSING.read_text()) | changes
+    if scenario.get("world") is None:
+        scenario.pop("world")
+    file = arena.folder / "scenario.yaml"
+    file.write_text(yaml.safe_dump(scenario))
+    return file
 
 
 def events(arena, name):
@@ -49,8 +60,10 @@ def interrupted_in_flight(jink, instance):
 
 def tracks_stop(jink, instance):
     with Arena(jink, instance) as arena:
-        sim = arena.sim(CROSSING, "--no-tracks")
-        writer = arena.start("tracks", [jink, "sim", CROSSING, "--no-vehicle", "--domain", arena.domain])
+        # Two processes start two clocks: what moves is not where the tracks say.
+        scenario = crossing(arena, obstacles=ASIDE)
+        sim = arena.sim(scenario, "--no-tracks")
+        writer = arena.start("tracks", [jink, "sim", scenario, "--no-vehicle", "--domain", arena.domain])
         fly = arena.fly(arena.mission("sitl"))
         wait_until(flying(arena), 60, "flight")
         writer.send_signal(signal.SIGKILL)
@@ -86,12 +99,7 @@ def refused(jink, instance):
 def ending(jink, instance, cause, fault, choice):
     """The mission's choice, by what was asked for and the mode in the end."""
     with Arena(jink, instance) as arena:
-        scenario = yaml.safe_load(CROSSING.read_text())
-        scenario["faults"] = [fault]
-        scenario["obstacles"] = [{"radius": 0.4, "position": [5, -6, 1.5]}]  # from then on nothing is avoided
-        file = arena.folder / "scenario.yaml"
-        file.write_text(yaml.safe_dump(scenario))
-        sim = simulated(arena, file)
+        sim = simulated(arena, crossing(arena, faults=[fault], obstacles=ASIDE))  # from then on nothing is avoided
         set_parameter(instance, "RTL_RETURN_ALT", 10.0)
         fly = arena.fly(arena.mission("sitl", endings={cause: choice}))
         check(wait(fly, 120) == 1, f"endings.{cause}: {choice} ends with exit status 1")
@@ -112,13 +120,8 @@ def battery_return(jink, instance):
 def collision(jink, instance):
     """A sphere appears on the vehicle: the simulator's motors stop, and fly says what it saw."""
     with Arena(jink, instance) as arena:
-        scenario = yaml.safe_load(CROSSING.read_text())
-        scenario.update(name="ambush", sensing={"range": 0.001}, obstacles=[
-            {"radius": 3.0, "motion": {"type": "waypoints", "times": [0, 1.0, 1.5], "points": [[6, 0, 30], [6, 0, 30], [6, 0, 1.5]]}}])
-        scenario.pop("world")
-        file = arena.folder / "ambush.yaml"
-        file.write_text(yaml.safe_dump(scenario))
-        sim = arena.sim(file)
+        falls = {"type": "waypoints", "times": [0, 1.0, 1.5], "points": [[6, 0, 30], [6, 0, 30], [6, 0, 1.5]]}
+        sim = arena.sim(crossing(arena, sensing={"range": 0.001}, world=None, obstacles=[{"radius": 3.0, "motion": falls}]))
         fly = arena.fly(arena.mission("sitl"))
         check(wait(fly, 90) == 1, "hit, fly ends with exit status 1")
         check("disarmed in flight" in arena.read("fly.json")["reason"], f"reason: {arena.read('fly.json')['reason']}")
