@@ -136,22 +136,23 @@ std::optional<LocalPosition> decode_local_position(std::span<const std::uint8_t>
   return whole ? std::optional(message) : std::nullopt;
 }
 
-bool LocalPositionFilter::update(const LocalPosition& message, double now) {
+bool LocalPositionFilter::update(const LocalPosition& message, double stamp, double now) {
   if (!sane(message)) return false;
   newest_ = message;
   if (message.global) origin_ = message.origin;
   if (!valid(message)) return true;
-  if (valid_) count_resets(message, now);
+  if (valid_) count_resets(message, stamp);
   valid_ = message;
+  valid_stamp_ = stamp;
   valid_at_ = now;
   return true;
 }
 
-void LocalPositionFilter::count_resets(const LocalPosition& message, double now) {
+void LocalPositionFilter::count_resets(const LocalPosition& message, double stamp) {
   const auto xy = static_cast<std::uint8_t>(message.xy_resets - valid_->xy_resets);
   const auto z = static_cast<std::uint8_t>(message.z_resets - valid_->z_resets);
   if (xy == 0 && z == 0) return;
-  const Vec3 seen = message.position_ned - valid_->position_ned - (now - valid_at_) * message.velocity_ned;
+  const Vec3 seen = message.position_ned - valid_->position_ned - (stamp - valid_stamp_) * message.velocity_ned;
   const auto jump = [&](std::uint8_t resets, Eigen::Index axis) {
     if (resets == 0) return 0.0;
     const bool told = resets == 1 && std::abs(message.shift_ned[axis]) <= kMaxPosition;
@@ -162,13 +163,13 @@ void LocalPositionFilter::count_resets(const LocalPosition& message, double now)
 }
 
 void LocalPositionFilter::apply(vehicle::VehicleState& state, double now) const {
-  state.motion.stamp = state.motion.received = valid_at_;
+  state.motion.stamp = valid_stamp_;
+  state.motion.received = valid_at_;
   state.estimate_resets = resets_;
   state.estimate_shift = frames::enu_from_ned(shift_ned_);
   if (origin_) state.origin = origin_;
   if (valid_) {
-    state.motion = {
-        {frames::enu_from_ned(valid_->position_ned), frames::enu_from_ned(valid_->velocity_ned)}, valid_at_, valid_at_};
+    state.motion.value = {frames::enu_from_ned(valid_->position_ned), frames::enu_from_ned(valid_->velocity_ned)};
     const double sigma = vehicle::px4::position_sigma(valid_->horizontal_accuracy, valid_->vertical_accuracy);
     if (sigma > 0.0) state.position_sigma = sigma;
     if (std::isfinite(valid_->heading)) state.yaw = frames::yaw_enu_from_heading(valid_->heading);

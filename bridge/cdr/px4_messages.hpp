@@ -43,15 +43,16 @@ class LocalPositionFilter {
   /// How old, in s, a position may be and still stand for "the estimator holds a local position".
   static constexpr double kMaxAge_s = 1.0;
 
-  /// Takes one message in, received at `now`. False, and nothing is taken, where a value that is marked as valid is not
-  /// finite or absurd (position beyond 1e5 m, speed beyond 1e3 m/s). heading_good_for_control says nothing of that: PX4
-  /// holds it false until the yaw was aligned in flight, above 1.5 m, and arms and flies OFFBOARD without it.
+  /// Takes one message in, true at `stamp` and received at `now`. False, and nothing is taken, where a value that is
+  /// marked as valid is not finite or absurd (position beyond 1e5 m, speed beyond 1e3 m/s). heading_good_for_control
+  /// says nothing of that: PX4 holds it false until the yaw was aligned in flight, above 1.5 m, and arms and flies
+  /// OFFBOARD without it.
   ///
   /// The position's stamp advances only with position and velocity all valid. A reset counter that advances by one
   /// tells of a jump of the message's own delta; one that advances by more (messages were lost, the autopilot was
   /// started anew) of what the position moved beyond its velocity, on the axes of that counter. Resets of velocity and
   /// heading move nothing.
-  [[nodiscard]] bool update(const LocalPosition& message, double now);
+  [[nodiscard]] bool update(const LocalPosition& message, double stamp, double now);
 
   /// Puts position, velocity, yaw, their stamp, estimate_resets, estimate_shift, local_position_ok and, once known,
   /// origin and position_sigma into `state`, in ENU. What is missing is added to `state.health`: "local position",
@@ -59,11 +60,12 @@ class LocalPositionFilter {
   void apply(vehicle::VehicleState& state, double now) const;
 
  private:
-  void count_resets(const LocalPosition& message, double now);
+  void count_resets(const LocalPosition& message, double stamp);
 
   std::optional<LocalPosition> newest_;  // the newest taken in, valid or not
   std::optional<LocalPosition> valid_;   // the newest with all valid
-  double valid_at_ = base::kNever;
+  double valid_stamp_ = base::kNever;
+  double valid_at_ = base::kNever;  // received
   std::uint32_t resets_ = 0;
   Vec3 shift_ned_ = Vec3::Zero();
   std::optional<frames::Geodetic> origin_;

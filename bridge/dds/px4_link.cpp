@@ -13,6 +13,7 @@
 #include "bridge/cdr/px4_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/frames/conversions.hpp"
+#include "bridge/tracking/clock_offset.hpp"
 
 namespace jink::bridge::dds {
 
@@ -126,12 +127,23 @@ class DdsVehicleLink::Impl {
   void accept(const Payload& payload, std::uint64_t writer) {
     const std::optional<cdr::px4::LocalPosition> message = cdr::px4::decode_local_position(payload);
     const double now = clock_.now();
+    const double system_now = system_time();
     const std::scoped_lock lock(mutex_);
     if (!message) {
       ++counts_.malformed;
-    } else if (writer != writer_ && heard_ >= 0.0 && now - heard_ < kWriterSilence_s) {
-      ++counts_.other_writers;
-    } else if (!filter_.update(*message, now)) {
+      return;
+    }
+    if (writer != writer_) {
+      if (heard_ >= 0.0 && now - heard_ < kWriterSilence_s) {
+        ++counts_.other_writers;
+        return;
+      }
+      clock_offset_ = {};
+    }
+    const auto late = clock_offset_.delay(now, system_now - static_cast<double>(message->timestamp_us) * 1e-6);
+    if (!late) {
+      ++counts_.late;
+    } else if (!filter_.update(*message, now - *late, now)) {
       ++counts_.dropped;
     } else {
       ++counts_.positions;
@@ -145,6 +157,7 @@ class DdsVehicleLink::Impl {
 
   mutable std::mutex mutex_;  // guards the next block
   cdr::px4::LocalPositionFilter filter_;
+  tracking::ClockOffsetEstimator clock_offset_;  // of that writer
   DdsVehicleCounts counts_;
   std::uint64_t writer_ = 0;
   double heard_ = -1.0;  // when that writer was

@@ -111,7 +111,9 @@ bool AutopilotTelemetry::on(double now, const LocalPosition& message) {
   }
   position_boot_ms_ = message.boot_ms;
   ++counts_.positions;
-  state_.motion = {{message.position, message.velocity}, now - delay_.one_way(), now};
+  // By its own clock it may be older than what else has come; boot_time() lets it be no more than kReboot_s older.
+  const double behind = 1e-3 * static_cast<std::int32_t>(*boot_ms_ - message.boot_ms);
+  state_.motion = {{message.position, message.velocity}, now - delay_.one_way() - behind, now};
   resets_.on_position({message.boot_ms * 1e-3, message.position, message.velocity});
   return true;
 }

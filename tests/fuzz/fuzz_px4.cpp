@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     now += 0.01 * input.byte();
     const auto message = jink::bridge::cdr::px4::decode_local_position(input.bytes(input.byte()));
     if (!message) continue;
-    (void)filter.update(*message, now);
+    (void)filter.update(*message, now - 0.01, now);
     jink::bridge::vehicle::VehicleState state;
     filter.apply(state, now);
     const bool finite = state.motion.value.position.allFinite() && state.motion.value.velocity.allFinite() &&

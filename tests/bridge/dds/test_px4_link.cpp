@@ -177,7 +177,7 @@ TEST(Px4LocalPositionFilter, GivesTheStateInEnu) {
   LocalPositionFilter filter;
   EXPECT_FALSE(state_of(filter, 3.0).motion.heard());
   EXPECT_FALSE(state_of(filter, 3.0).local_position_ok);
-  ASSERT_TRUE(filter.update(*decode_local_position(new_payload()), 2.5));
+  ASSERT_TRUE(filter.update(*decode_local_position(new_payload()), 2.5, 2.5));
   const VehicleState s = state_of(filter, 3.0);
   EXPECT_EQ(s.motion.stamp, 2.5);
   EXPECT_EQ(s.motion.value.position, Vec3(2, 5, 10));
@@ -195,11 +195,11 @@ TEST(Px4LocalPositionFilter, LetsTheStampAgeWhereAnythingIsNotValid) {
   for (bool LocalPosition::*const flag :
        {&LocalPosition::xy_valid, &LocalPosition::z_valid, &LocalPosition::v_xy_valid, &LocalPosition::v_z_valid}) {
     LocalPositionFilter filter;
-    ASSERT_TRUE(filter.update(valid_position(), 1.0));
+    ASSERT_TRUE(filter.update(valid_position(), 1.0, 1.0));
     LocalPosition bad = valid_position();
     bad.*flag = false;
     bad.position_ned = {kNaN, 7.0, 7.0};  // what is not valid may be anything
-    ASSERT_TRUE(filter.update(bad, 1.1));
+    ASSERT_TRUE(filter.update(bad, 1.1, 1.1));
     const VehicleState s = state_of(filter, 1.1);
     EXPECT_EQ(s.motion.stamp, 1.0);
     EXPECT_EQ(s.motion.value.position, Vec3::Zero());
@@ -212,12 +212,12 @@ TEST(Px4LocalPositionFilter, SaysWhatIsMissing) {
   LocalPositionFilter filter;
   LocalPosition m = valid_position();
   m.heading = kNaN;
-  ASSERT_TRUE(filter.update(m, 1.0));
+  ASSERT_TRUE(filter.update(m, 1.0, 1.0));
   EXPECT_FALSE(state_of(filter, 1.0).local_position_ok);
   EXPECT_EQ(state_of(filter, 1.0).health, "heading");
   EXPECT_EQ(state_of(filter, 1.0).yaw, 0.0);
   EXPECT_FALSE(state_of(filter, 1.0).origin);
-  ASSERT_TRUE(filter.update(valid_position(), 2.0));
+  ASSERT_TRUE(filter.update(valid_position(), 2.0, 2.0));
   EXPECT_TRUE(state_of(filter, 2.0 + LocalPositionFilter::kMaxAge_s).local_position_ok);
   EXPECT_EQ(state_of(filter, 2.0).health, "");
   EXPECT_FALSE(state_of(filter, 2.01 + LocalPositionFilter::kMaxAge_s).local_position_ok);
@@ -229,7 +229,7 @@ TEST(Px4LocalPositionFilter, HoldsAPositionWhoseHeadingIsNotGoodForControl) {
   wire.heading_good_for_control(false);
   wire.dead_reckoning(false);
   LocalPositionFilter filter;
-  ASSERT_TRUE(filter.update(*decode_local_position(new_payload(wire)), 1.0));
+  ASSERT_TRUE(filter.update(*decode_local_position(new_payload(wire)), 1.0, 1.0));
   EXPECT_TRUE(state_of(filter, 1.0).local_position_ok);
   EXPECT_EQ(state_of(filter, 1.0).health, "");
   EXPECT_NEAR(state_of(filter, 1.0).yaw, 0.0, 1e-6);
@@ -237,7 +237,7 @@ TEST(Px4LocalPositionFilter, HoldsAPositionWhoseHeadingIsNotGoodForControl) {
 
 TEST(Px4LocalPositionFilter, RefusesValuesThatCannotBe) {
   LocalPositionFilter filter;
-  ASSERT_TRUE(filter.update(valid_position(), 1.0));
+  ASSERT_TRUE(filter.update(valid_position(), 1.0, 1.0));
   std::vector<LocalPosition> bad(6, valid_position());
   bad[0].position_ned.y() = kNaN;
   bad[1].position_ned.x() = 2e5;
@@ -247,7 +247,7 @@ TEST(Px4LocalPositionFilter, RefusesValuesThatCannotBe) {
   bad[4].origin.latitude_deg = 91.0;
   bad[5].global = true;
   bad[5].origin.altitude_m = kNaN;
-  for (const LocalPosition& m : bad) EXPECT_FALSE(filter.update(m, 2.0));
+  for (const LocalPosition& m : bad) EXPECT_FALSE(filter.update(m, 2.0, 2.0));
   EXPECT_EQ(state_of(filter, 2.0).motion.stamp, 1.0);
 }
 
@@ -256,19 +256,19 @@ TEST(Px4LocalPositionFilter, CountsAJumpByWhatTheMessageSays) {
   LocalPosition m = valid_position();
   m.xy_resets = 255;
   m.shift_ned = {9, 9, 9};  // of long ago
-  ASSERT_TRUE(filter.update(m, 1.0));
+  ASSERT_TRUE(filter.update(m, 1.0, 1.0));
   EXPECT_EQ(state_of(filter, 1.0).estimate_resets, 0U);
   m.xy_resets = 0;  // the counter wraps
   m.shift_ned = {3.0, -1.0, 9.0};
-  ASSERT_TRUE(filter.update(m, 1.02));
+  ASSERT_TRUE(filter.update(m, 1.02, 1.02));
   EXPECT_EQ(state_of(filter, 1.02).estimate_resets, 1U);
   EXPECT_EQ(state_of(filter, 1.02).estimate_shift, Vec3(-1.0, 3.0, 0.0));
   m.z_resets = 1;
   m.shift_ned = {3.0, -1.0, -2.0};
-  ASSERT_TRUE(filter.update(m, 1.04));
+  ASSERT_TRUE(filter.update(m, 1.04, 1.04));
   EXPECT_EQ(state_of(filter, 1.04).estimate_resets, 2U);
   EXPECT_EQ(state_of(filter, 1.04).estimate_shift, Vec3(-1.0, 3.0, 2.0));
-  ASSERT_TRUE(filter.update(m, 1.06));
+  ASSERT_TRUE(filter.update(m, 1.06, 1.06));
   EXPECT_EQ(state_of(filter, 1.06).estimate_resets, 2U);
 }
 
@@ -276,11 +276,11 @@ TEST(Px4LocalPositionFilter, CountsJumpsThatItMissedByWhatThePositionDid) {
   LocalPositionFilter filter;
   LocalPosition m = valid_position();
   m.velocity_ned = {2.0, 0.0, 0.0};
-  ASSERT_TRUE(filter.update(m, 1.0));
+  ASSERT_TRUE(filter.update(m, 1.0, 1.0));
   m.position_ned = {1.0 + 4.0, 0.0, 0.0};  // 0.5 s at 2 m/s, and two jumps of which the message tells one
   m.shift_ned = {1.0, 0.0, 0.0};
   m.xy_resets = 2;
-  ASSERT_TRUE(filter.update(m, 1.5));
+  ASSERT_TRUE(filter.update(m, 1.5, 1.5));
   EXPECT_EQ(state_of(filter, 1.5).estimate_resets, 2U);
   EXPECT_NEAR(state_of(filter, 1.5).estimate_shift.y(), 4.0, 1e-12);
 }
@@ -355,6 +355,31 @@ TEST_F(Px4Dds, TakesPositionsFromPx4sWritersAndTheRestFromTheLinkUnderneath) {
   dds.request(vehicle::Command::kArm);
   EXPECT_EQ(under_.requested.size(), 1U);
   EXPECT_EQ(dds.next_report()->detail, "from below");
+}
+
+// By the stamp of an autopilot whose clock the agent keeps with the system's.
+TEST_F(Px4Dds, APositionIsAsOldAsItsStampSays) {
+  auto dds = link({.state = true, .setpoints = false, .name_space = ""});
+  auto writer = position_writer("rt/fmu/out/vehicle_local_position_v1", {.reliable = true});
+  ASSERT_TRUE(eventually([&] { return dds.counts().position_writers == 1 && writer.readers() == 1; }));
+  const auto write = [&](double age) {
+    WirePosition wire = wire_position();
+    wire.timestamp(static_cast<std::uint64_t>((system_time() - age) * 1e6));
+    return writer.write(new_payload(wire));
+  };
+  clock_.set(5.0);
+  ASSERT_TRUE(write(0.0));
+  ASSERT_TRUE(eventually([&] { return dds.counts().positions == 1; }));
+  EXPECT_LT(dds.state().motion.delay(), 0.2);
+  clock_.set(5.8);
+  ASSERT_TRUE(write(0.7));
+  ASSERT_TRUE(eventually([&] { return dds.counts().positions == 2; }));
+  EXPECT_GE(dds.state().motion.delay(), 0.7);
+  EXPECT_EQ(dds.state().motion.received, 5.8);
+  clock_.set(7.5);
+  ASSERT_TRUE(write(1.5));
+  EXPECT_TRUE(eventually([&] { return dds.counts().late == 1; }));
+  EXPECT_EQ(dds.state().motion.received, 5.8);
 }
 
 TEST_F(Px4Dds, MatchesReliableAndVolatileWritersOnTheOlderTopic) {

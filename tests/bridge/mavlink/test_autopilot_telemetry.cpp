@@ -56,6 +56,17 @@ TEST(AutopilotTelemetry, TheHeartbeatsModeCountsWhereNothingNewerIsTold) {
   EXPECT_EQ(heard.state().mode, FlightMode::kHold);
 }
 
+TEST(AutopilotTelemetry, APositionIsAsOldAsTheAutopilotsClockSays) {
+  Heard heard;
+  heard.telemetry.on(heard.now, LocalPosition{10'000, {1, 2, 3}, {}});
+  EXPECT_EQ(heard.state().motion.delay(), 0.0);
+  heard.now += 0.02;
+  heard.telemetry.on(Attitude{10'720, 0.0});
+  heard.telemetry.on(heard.now, LocalPosition{10'020, {1, 2, 3}, {}});
+  EXPECT_NEAR(heard.state().motion.delay(), 0.7, 1e-9);
+  EXPECT_EQ(heard.state().motion.received, heard.now);
+}
+
 TEST(AutopilotTelemetry, APositionIsGoodWhileItIsYoungAndTheEstimatorHoldsIt) {
   AutopilotTelemetry telemetry;
   EXPECT_EQ(telemetry.state(5.0).health, "no SYS_STATUS yet, local position");
