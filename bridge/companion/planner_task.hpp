@@ -53,7 +53,8 @@ struct PlanResult {
 /// What the job's plan is to avoid up to that planner's horizon.
 [[nodiscard]] inline prediction::Obstacles obstacles_of(const PlanJob& job,
                                                         const planner::base::HorizonSettings& settings) {
-  return prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step);
+  return prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step,
+                                  settings.acceleration_trust);
 }
 /// The same. The request refers to it, until forget_obstacles().
 [[nodiscard]] inline prediction::Obstacles set_obstacles(PlanJob& job, const planner::base::HorizonSettings& settings) {

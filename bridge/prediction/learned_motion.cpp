@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/base/portable_math.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::prediction {
 
@@ -24,6 +25,25 @@ double fold(double x, double least, double most) {
   if (low && x < least) return 2.0 * least - x;
   if (high && x > most) return 2.0 * most - x;
   return x;
+}
+
+/// The track's plain prediction up to then. What its acceleration may be off by is left out: a forecast that is relied
+/// on has shown how the obstacle moves.
+planner::geometry::KnownPath plain_path(const planner::base::Track& track, double until, double step, double trust) {
+  planner::geometry::KnownPath path;
+  path.id = track.id;
+  path.radius = track.radius;
+  path.position_sigma = track.position_sigma;
+  path.velocity_sigma = track.velocity_sigma;
+  path.age = track.age;
+  path.until = until;
+  const int points = std::max(1, static_cast<int>(std::ceil(until / step))) + 1;
+  path.points.reserve(static_cast<std::size_t>(points));
+  for (int n = 0; n < points; ++n) {
+    const double t = n * step;
+    path.points.push_back({t, planner::geometry::predict_position(track, t, trust), Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
 }
 
 }  // namespace
@@ -81,15 +101,18 @@ planner::geometry::KnownPath to_path(const Forecast& forecast, double horizon, d
 }
 
 Obstacles obstacles_of(std::span<const planner::base::Track> tracks, std::span<const Forecast> forecasts,
-                       std::span<const planner::geometry::KnownPath> paths, double horizon, double step) {
+                       std::span<const planner::geometry::KnownPath> paths, double horizon, double step, double trust) {
   Obstacles result;
   result.paths.assign(paths.begin(), paths.end());
   std::vector<bool> replaced(tracks.size(), false);
   for (const Forecast& forecast : forecasts) {
     if (forecast.track >= tracks.size()) continue;
     result.paths.push_back(to_path(forecast, horizon, step));
-    result.paths.back().id = tracks[forecast.track].id;
-    if (forecast.replaces) replaced[forecast.track] = true;
+    const planner::base::Track& track = tracks[forecast.track];
+    result.paths.back().id = track.id;
+    if (!(forecast.plain_until < horizon)) continue;
+    replaced[forecast.track] = true;
+    if (forecast.plain_until > 0.0) result.paths.push_back(plain_path(track, forecast.plain_until, step, trust));
   }
   result.tracks.reserve(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {

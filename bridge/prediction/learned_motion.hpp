@@ -49,8 +49,9 @@ struct Forecast {
   double radius = 0.0;
   double position_sigma = 0.0;  ///< standard deviation of the position now, per axis
   double velocity_sigma = 0.0;  ///< and its growth with time
-  /// The track's plain prediction no longer counts. Otherwise the obstacle may go either way.
-  bool replaces = false;
+  /// s; up to then the obstacle may as well go on as its plain prediction says. For ever, unless the forecast has
+  /// proved right before.
+  double plain_until = planner::base::kInfinity;
 };
 
 /// The forecast as a known path of so many seconds, a point every `step`, its time 0 the forecast's. Its id is 0.
@@ -61,8 +62,10 @@ struct Obstacles {
   std::vector<planner::base::Track> tracks;
   std::vector<planner::geometry::KnownPath> paths;
 };
-/// `tracks` without those that a forecast replaces; `paths`, then the forecasts' for so many seconds.
+/// The tracks whose plain prediction counts for ever; `paths`, then the forecasts' for so many seconds, each followed
+/// by its track's plain prediction for as long as that counts.
 [[nodiscard]] Obstacles obstacles_of(std::span<const planner::base::Track> tracks, std::span<const Forecast> forecasts,
-                                     std::span<const planner::geometry::KnownPath> paths, double horizon, double step);
+                                     std::span<const planner::geometry::KnownPath> paths, double horizon, double step,
+                                     double trust);
 
 }  // namespace jink::bridge::prediction

@@ -117,27 +117,29 @@ void MotionLearner::remember(const MotionSample& sample, bool exact) {
 }
 
 void MotionLearner::observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate,
-                            std::uint64_t name, LearnedBounds& room) {
+                            std::uint64_t name, Experience& all) {
   if (first_ < 0.0) first_ = t;
   remember({t, measured.position, measured.velocity}, exact(measured));
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
-  room.saw(estimate.position, estimate.radius);
+  all.bounds.saw(estimate.position, estimate.radius);
   // A bound that the track has passed is none.
   for (int axis = 0; axis < 3; ++axis) {
     const double slack = kBeyond + kSigmas * estimate.position_sigma;
     auto& [below, above] = returns_[static_cast<std::size_t>(axis)];
     if (estimate.position[axis] > turns_.max[axis] + slack) {
+      all.turns.note(/*came_true=*/false);
       turns_.max[axis] = planner::base::kInfinity;
       above = 0;
     }
     if (estimate.position[axis] < turns_.min[axis] - slack) {
+      all.turns.note(/*came_true=*/false);
       turns_.min[axis] = -planner::base::kInfinity;
       below = 0;
     }
   }
-  look_for_turn(t, measured, name, room);
-  judge(t, estimate);
+  look_for_turn(t, measured, name, all);
+  judge(t, estimate, all.swings);
   const bool curves = estimate.position_sigma <= 0.0 && estimate.acceleration.squaredNorm() > kCurving * kCurving;
   const bool fails =
       std::any_of(trials_.begin(), trials_.end(), [](const Trial& trial) { return trial.plain_wrong(); });
@@ -146,19 +148,20 @@ void MotionLearner::observe(double t, const planner::base::Track& measured, cons
 }
 
 void MotionLearner::turned(double t, int axis, double where, double speed, std::uint64_t name, double radius,
-                           LearnedBounds& room) {
+                           Experience& all) {
   const bool upper = speed > 0.0;
   double& bound = (upper ? turns_.max : turns_.min)[axis];
   int& returns = returns_[static_cast<std::size_t>(axis)][upper ? 1 : 0];
-  returns = std::abs(where - bound) < 2.0 * kBeyond ? returns + 1 : 1;
+  const bool again = std::abs(where - bound) < 2.0 * kBeyond;
+  if (again) all.turns.note(/*came_true=*/true);
+  returns = again ? returns + 1 : 1;
   bound = where;
-  room.turned(name, axis, upper, upper ? where + radius : where - radius);
+  all.bounds.turned(name, axis, upper, upper ? where + radius : where - radius);
   last_turn_ = t;
 }
 
 // Two straight pieces at the same speed, one axis turned round.
-void MotionLearner::look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name,
-                                  LearnedBounds& room) {
+void MotionLearner::look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, Experience& all) {
   const std::size_t window = exact(measured) ? 1 : kNoisyWindow;
   if (recent_.size() < 2 * window) return;
   if (!exact(measured) && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
@@ -190,12 +193,12 @@ void MotionLearner::look_for_turn(double t, const planner::base::Track& measured
     const double until = (after.position[axis] - before.position[axis] + std::abs(v1) * (v0 > 0.0 ? dt : -dt)) /
                          (std::abs(v1) * (v0 > 0.0 ? 1.0 : -1.0) + v0);
     if (!(until >= -0.5 * dt && until <= 1.5 * dt)) continue;
-    turned(t, axis, before.position[axis] + until * v0, v0, name, measured.radius, room);
+    turned(t, axis, before.position[axis] + until * v0, v0, name, measured.radius, all);
   }
 }
 
 // Holds the fits on trial against the newest estimate.
-void MotionLearner::judge(double t, const planner::base::Track& estimate) {
+void MotionLearner::judge(double t, const planner::base::Track& estimate, PredictionRecord& swings) {
   const double noise = kSigmas * estimate.position_sigma;
   const auto lead = [t](const Trial& trial) { return t - trial.begun; };
   for (Trial& trial : trials_) {
@@ -218,6 +221,10 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate) {
     Trial& trial = trials_.front();
     plain_ = !trial.plain_wrong();
     if (trial.misfit < kBetter * trial.plain_misfit) {
+      if (proven_ && t - recorded_ >= kLead) {
+        swings.note(/*came_true=*/true);
+        recorded_ = t;
+      }
       if (failures_ < 0) proven_ = trial.misfit;
       failures_ = std::min(failures_, 0) - 1;
       if (trials_.size() == 1) {  // a forecast needs a fit that is on trial: the same again, until there is a new one
@@ -225,6 +232,7 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate) {
         break;
       }
     } else {
+      if (proven_ && wrong(trial)) swings.note(/*came_true=*/false);
       proven_.reset();
       failures_ = std::max(failures_, 0) + 1;
     }
@@ -232,6 +240,7 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate) {
   }
   // A fit that goes wrong before its time is over ends the belief at once.
   if (std::any_of(trials_.begin(), trials_.end(), wrong)) {
+    if (proven_) swings.note(/*came_true=*/false);
     proven_.reset();
     failures_ = std::max(failures_, 0);
   }
@@ -256,7 +265,7 @@ bool MotionLearner::certain(const BouncingMotion& motion, const BouncingMotion::
 }
 
 std::optional<Forecast> MotionLearner::forecast(double now, double t, const planner::base::Track& estimate,
-                                                const LearnedBounds& room) const {
+                                                const Experience& all) const {
   Forecast forecast;
   forecast.radius = estimate.radius;
   forecast.position_sigma = estimate.position_sigma;
@@ -264,15 +273,16 @@ std::optional<Forecast> MotionLearner::forecast(double now, double t, const plan
     const Trial& newest = trials_.back();
     forecast.motion = newest.motion.later(now - newest.begun);
     forecast.velocity_sigma = kDoubt + 0.5 * *proven_ / kLead;
-    forecast.replaces = true;
+    if (all.swings.good()) forecast.plain_until = kLead;
     return forecast;
   }
-  BouncingMotion bouncing{estimate.position, estimate.velocity, room.bounds(estimate.radius)};
+  BouncingMotion bouncing{estimate.position, estimate.velocity, all.bounds.bounds(estimate.radius)};
   bouncing.room.min = bouncing.room.min.cwiseMax(turns_.min);
   bouncing.room.max = bouncing.room.max.cwiseMin(turns_.max);
   const BouncingMotion::Turn next = bouncing.first_turn();
   if (!(next.t < now - t + kAhead)) return std::nullopt;
-  forecast.replaces = certain(bouncing, next);
+  // Until then nothing tells the obstacle that turns from the one that goes on.
+  if (certain(bouncing, next) && all.turns.good()) forecast.plain_until = std::max(0.0, next.t - (now - t)) + kLead;
   bouncing.begin = bouncing.position(now - t);
   for (int axis = 0; axis < 3; ++axis) {
     const double x = estimate.position[axis] + (now - t) * estimate.velocity[axis];

@@ -34,15 +34,38 @@ class LearnedBounds {
   std::array<std::array<Side, 2>, 3> sides_;  // axis; lower, upper
 };
 
+/// How often what was foreseen came true.
+class PredictionRecord {
+ public:
+  /// The most that may be wrong of what plain prediction gives way to.
+  static constexpr double kMostDoubt = 0.1;
+  void note(bool came_true) { ++(came_true ? kept_ : broken_); }
+  /// Probability that the next one does not: Laplace's rule of succession. 1/2 where nothing was foreseen yet.
+  [[nodiscard]] double doubt() const { return (broken_ + 1.0) / (kept_ + broken_ + 2.0); }
+  [[nodiscard]] bool good() const { return doubt() <= kMostDoubt; }
+
+ private:
+  int kept_ = 0, broken_ = 0;
+};
+
+/// What the tracks of a flight have taught together.
+struct Experience {
+  LearnedBounds bounds;
+  PredictionRecord turns;   ///< at places where the same track turned before
+  PredictionRecord swings;  ///< of fits that had proved right, one for each kLead seconds of a track
+};
+
 /// What one track did, and what follows from it. A learned motion is believed for as long as it keeps being clearly
 /// better than plain prediction: each fit is held against what comes in the following kLead seconds, longer where both
-/// do. A turn is relied on where the track turned twice, and avoided besides plain prediction where it turned once or
-/// others did.
+/// do. A turn is foreseen where the track turned before or others did. What is foreseen is avoided besides plain
+/// prediction; that gives way only where the flight's record is good, and not before the obstacle has had time to show
+/// that it moves on as before: so something that is foreseen wrongly, one time in ten at most, is seen kLead before it
+/// is where nothing was expected.
 class MotionLearner {
  public:
   /// The newest measurement, as measured and as estimated, at its instant `t`. O(samples on trial).
   void observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate, std::uint64_t name,
-               LearnedBounds& room);
+               Experience& all);
 
   /// When the next fit is due.
   [[nodiscard]] double fit_due() const { return next_fit_; }
@@ -51,7 +74,7 @@ class MotionLearner {
 
   /// What is known of the way from `now` on, or nothing. `estimate` is the newest estimate, of the instant `t`.
   [[nodiscard]] std::optional<Forecast> forecast(double now, double t, const planner::base::Track& estimate,
-                                                 const LearnedBounds& room) const;
+                                                 const Experience& all) const;
 
   /// Whether it is new, and not yet understood: plain prediction has been seen to fail or does not fit what is
   /// measured, and nothing else has proved right. Never longer than kLongestUnexplained.
@@ -73,10 +96,10 @@ class MotionLearner {
   };
   void remember(const MotionSample& sample, bool exact);
   void thin_out(bool exact);
-  void judge(double t, const planner::base::Track& estimate);
-  void look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, LearnedBounds& room);
+  void judge(double t, const planner::base::Track& estimate, PredictionRecord& swings);
+  void look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, Experience& all);
   [[nodiscard]] bool certain(const BouncingMotion& motion, const BouncingMotion::Turn& turn) const;
-  void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, LearnedBounds& room);
+  void turned(double t, int axis, double where, double speed, std::uint64_t name, double radius, Experience& all);
 
   std::vector<MotionSample> samples_;  // thinned out as they grow old
   double spacing_ = 0.0;
@@ -93,6 +116,7 @@ class MotionLearner {
   planner::base::Box turns_;                     // of its own
   std::array<std::array<int, 2>, 3> returns_{};  // axis; lower, upper: how often it turned there
   double last_turn_ = -1.0;
+  double recorded_ = -1.0;  // when it added to the record of swings last
 };
 
 }  // namespace jink::bridge::prediction

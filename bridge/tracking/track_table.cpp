@@ -136,7 +136,7 @@ void TrackTable::learn(const TrackMessage& message, double t) {
       ++learned_;
     }
     if (!entry.learned) continue;
-    entry.learned->observe(t, measured, entry.track.value, measured.id, room_);
+    entry.learned->observe(t, measured, entry.track.value, measured.id, experience_);
     if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
   }
   std::stable_sort(due.begin(), due.end(),
@@ -218,7 +218,7 @@ std::vector<planner::base::Track> TrackTable::predict(double now, double trust,
   for (const auto& [key, entry] : entries_) {
     if (entry.is_self) continue;
     if (forecasts != nullptr && entry.learned) {
-      if (auto forecast = entry.learned->forecast(now, entry.track.stamp, entry.track.value, room_)) {
+      if (auto forecast = entry.learned->forecast(now, entry.track.stamp, entry.track.value, experience_)) {
         forecast->track = tracks.size();
         forecasts->push_back(std::move(*forecast));
       }

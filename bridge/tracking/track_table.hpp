@@ -124,7 +124,7 @@ class TrackTable {
   std::map<std::uint64_t, Writer> writers_;
   std::map<Key, Entry> entries_;
   std::optional<Vec3> vehicle_;  // where it was last
-  prediction::LearnedBounds room_;
+  prediction::Experience experience_;
   std::size_t learned_ = 0;  // tracks
 };
 

@@ -215,9 +215,9 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
 }
 
 void FlightLog::add_forecast(const bridge::prediction::Forecast& forecast) {
-  const auto& [track, motion, radius, position_sigma, velocity_sigma, replaces] = forecast;
+  const auto& [track, motion, radius, position_sigma, velocity_sigma, plain_until] = forecast;
   line_.open('{').key("track").integer(track).key("radius").exact(radius).key("position_sigma").exact(position_sigma);
-  line_.key("velocity_sigma").exact(velocity_sigma).key("replaces").flag(replaces);
+  line_.key("velocity_sigma").exact(velocity_sigma).key("plain_until").exact(plain_until);
   if (const auto* bouncing = std::get_if<bridge::prediction::BouncingMotion>(&motion)) {
     line_.key("bounces").open('[');
     for (const Vec3& part : {bouncing->begin, bouncing->velocity, bouncing->room.min, bouncing->room.max})

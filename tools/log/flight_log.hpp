@@ -45,11 +45,11 @@ struct FlightLogOptions {
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], margin, track_acceleration,
 /// acceleration_trust, stuck, visit, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma,
-/// velocity_sigma, age], ...], forecasts: [{track, radius, position_sigma, velocity_sigma, replaces, bounces: [begin,
-/// velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset,
-/// radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other
-/// vehicles (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times from
-/// there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and
+/// velocity_sigma, age], ...], forecasts: [{track, radius, position_sigma, velocity_sigma, plain_until, bounces:
+/// [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id,
+/// offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's
+/// other vehicles (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
+/// from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and
 /// parameters the plan can be made again (tools/log/flight_replay.hpp).
 ///
 /// The observers may be called from one thread at a time.

@@ -110,7 +110,7 @@ bridge::prediction::Forecast forecast_of(const Json& item, std::size_t tracks) {
   forecast.radius = exact(member(item, "radius"), "radius");
   forecast.position_sigma = exact(member(item, "position_sigma"), "position_sigma");
   forecast.velocity_sigma = exact(member(item, "velocity_sigma"), "velocity_sigma");
-  forecast.replaces = flag_of(item, "replaces");
+  forecast.plain_until = exact(member(item, "plain_until"), "plain_until");
   if (item.contains("bounces")) {
     const auto x = exact_numbers<12>(member(item, "bounces"), "bounces");
     forecast.motion = bridge::prediction::BouncingMotion{

@@ -9,6 +9,7 @@
 #include "bridge/prediction/imm_filter.hpp"
 #include "bridge/prediction/motion_learner.hpp"
 #include "planner/base/random.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::prediction {
 namespace {
@@ -40,10 +41,19 @@ Track exact(Motion motion, double t) {
   return track;
 }
 
+/// Of a flight in which what was foreseen has come true often enough.
+Experience good_experience() {
+  Experience all;
+  for (PredictionRecord* record : {&all.turns, &all.swings}) {
+    while (!record->good()) record->note(/*came_true=*/true);
+  }
+  return all;
+}
+
 /// One track, watched for so long.
 struct Watched {
   MotionLearner learned;
-  LearnedBounds room;
+  Experience all = good_experience();
   Track last;
   double t = 0.0;
   bool fits = true;  // are made
@@ -52,13 +62,17 @@ struct Watched {
   void watch(Motion motion, double until, std::uint64_t name = 1) {
     for (; t <= until + 1e-9; t += kStep) {
       last = exact(motion, t);
-      learned.observe(t, last, last, name, room);
+      learned.observe(t, last, last, name, all);
       if (fits && learned.fit_due() <= t) learned.fit(t, last, last);
     }
     t -= kStep;
   }
-  [[nodiscard]] std::optional<Forecast> forecast(double now) const { return learned.forecast(now, t, last, room); }
+  [[nodiscard]] std::optional<Forecast> forecast(double now) const { return learned.forecast(now, t, last, all); }
 };
+
+bool relied_on(const Forecast& forecast) {
+  return forecast.plain_until < planner::base::kInfinity;
+}
 
 TEST(HarmonicMotion, LaterIsTheSameMotion) {
   HarmonicMotion motion;
@@ -105,7 +119,7 @@ TEST(MotionLearner, ForecastsWhatSwings) {
   watched.watch(swing, 5.0);
   const auto forecast = watched.forecast(5.2);
   ASSERT_TRUE(forecast.has_value());
-  EXPECT_TRUE(forecast->replaces);
+  EXPECT_EQ(forecast->plain_until, MotionLearner::kLead);
   const planner::geometry::KnownPath path = to_path(*forecast, 3.0, 0.1);
   ASSERT_TRUE(path.well_formed());
   for (const double ahead : {0.0, 1.0, 2.0, 3.0})
@@ -127,7 +141,7 @@ TEST(MotionLearner, ForecastsAnExactTrefoilSoon) {
   watched.watch(trefoil, 1.4);
   const auto forecast = watched.forecast(1.4);
   ASSERT_TRUE(forecast.has_value());
-  EXPECT_TRUE(forecast->replaces);
+  EXPECT_TRUE(relied_on(*forecast));
   const planner::geometry::KnownPath path = to_path(*forecast, 2.0, 0.1);
   for (const double ahead : {0.5, 1.0}) EXPECT_LT((path.position(ahead) - trefoil(1.4 + ahead)).norm(), 0.15) << ahead;
 }
@@ -156,7 +170,7 @@ TEST(MotionLearner, IsUnexplainedForAWhileOnly) {
     track.acceleration = push;
     track.velocity += kStep * push;
     track.position += kStep * track.velocity;
-    watched.learned.observe(t, track, track, 1, watched.room);
+    watched.learned.observe(t, track, track, 1, watched.all);
     if (watched.learned.fit_due() <= t) watched.learned.fit(t, track, track);
     EXPECT_EQ(watched.learned.unexplained(t), t < MotionLearner::kLongestUnexplained && push.norm() > 0.0) << t;
   }
@@ -177,7 +191,7 @@ TEST(MotionLearner, StopsBelievingWhenTheMotionIsAnother) {
   watched.t += kStep;
   watched.watch([&](double t) { return Vec3(place + (t - 5.0) * Vec3(before.velocity.x(), 3.0, 0.0)); }, 6.0);
   const auto forecast = watched.forecast(6.0);
-  EXPECT_FALSE(forecast.has_value() && forecast->replaces);
+  EXPECT_FALSE(forecast.has_value() && relied_on(*forecast));
 }
 
 /// Between -1 and 1 on y at 1 m/s, from `y` on.
@@ -191,24 +205,24 @@ TEST(MotionLearner, KnowsWhereItTurnedBefore) {
   watched.watch([](double t) { return bouncing(t, 0.03); }, 4.0);  // turned at 0.97 and at 2.97
   const auto forecast = watched.forecast(4.0);
   ASSERT_TRUE(forecast.has_value());
-  EXPECT_FALSE(forecast->replaces);  // it may as well go on
+  EXPECT_FALSE(relied_on(*forecast));  // it may as well go on
   const planner::geometry::KnownPath path = to_path(*forecast, 3.0, 0.1);
   EXPECT_LT((path.position(2.5) - bouncing(6.5, 0.03)).norm(), 0.1);
 }
 
-// The third time round, plain prediction no longer counts, until the track passes.
+// The third time round, plain prediction counts until a second after the turn, and for ever once the track has passed.
 TEST(MotionLearner, ReliesOnATurnThatCameTwice) {
   Watched watched;
   watched.fits = false;
   watched.watch([](double t) { return bouncing(t, 0.03); }, 6.0);  // at 0.97, 2.97 and 4.97
   const auto forecast = watched.forecast(6.0);
   ASSERT_TRUE(forecast.has_value());
-  EXPECT_FALSE(forecast->replaces);  // on its way down, where it turned once
+  EXPECT_FALSE(relied_on(*forecast));  // on its way down, where it turned once
   watched.t += kStep;
   watched.watch([](double t) { return bouncing(t, 0.03); }, 8.0);
   const auto again = watched.forecast(8.0);
   ASSERT_TRUE(again.has_value());
-  EXPECT_TRUE(again->replaces);
+  EXPECT_NEAR(again->plain_until, 8.97 - 8.0 + MotionLearner::kLead, 1e-6);
   EXPECT_LT((to_path(*again, 3.0, 0.1).position(2.5) - bouncing(10.5, 0.03)).norm(), 0.1);
   const Vec3 place = bouncing(8.0, 0.03);
   watched.t += kStep;
@@ -216,10 +230,60 @@ TEST(MotionLearner, ReliesOnATurnThatCameTwice) {
   EXPECT_FALSE(watched.forecast(9.5).has_value());
 }
 
+// At most a tenth may be wrong, by the rule of succession: eight turns where it turned before, or eight seconds.
+TEST(MotionLearner, ReliesOnNothingWithoutARecord) {
+  Watched watched;
+  watched.all = {};
+  watched.fits = false;
+  const auto until = [&](double t) {
+    watched.watch([](double s) { return bouncing(s, 0.03); }, t);
+    watched.t += kStep;
+    return watched.forecast(watched.t);
+  };
+  ASSERT_TRUE(until(18.0).has_value());
+  EXPECT_FALSE(relied_on(*until(18.1)));  // 9 turns, the first on either side foreseen by nobody
+  EXPECT_TRUE(relied_on(*until(20.1)));
+  watched.all.turns.note(/*came_true=*/false);  // another track walked on
+  EXPECT_FALSE(relied_on(*until(20.2)));
+  Watched swinging;
+  swinging.all = {};
+  swinging.watch(swing, 5.0);
+  ASSERT_TRUE(swinging.forecast(5.0).has_value());
+  EXPECT_FALSE(relied_on(*swinging.forecast(5.0)));
+  swinging.t += kStep;
+  swinging.watch(swing, 14.0);
+  EXPECT_TRUE(relied_on(*swinging.forecast(14.0)));
+}
+
+TEST(PredictionRecord, DoubtsByTheRuleOfSuccession) {
+  PredictionRecord record;
+  EXPECT_EQ(record.doubt(), 0.5);
+  for (int i = 0; i < 7; ++i) record.note(/*came_true=*/true);
+  EXPECT_NEAR(record.doubt(), 1.0 / 9.0, 1e-12);
+  EXPECT_FALSE(record.good());
+  record.note(/*came_true=*/true);
+  EXPECT_TRUE(record.good());
+  record.note(/*came_true=*/false);
+  EXPECT_NEAR(record.doubt(), 2.0 / 11.0, 1e-12);
+  EXPECT_FALSE(record.good());
+}
+
+TEST(MotionLearner, RecordsWhatComesTrueAndWhatDoesNot) {
+  Watched watched;
+  watched.all = {};
+  watched.fits = false;
+  watched.watch([](double t) { return bouncing(t, 0.03); }, 8.0);  // two turns where it turned before
+  EXPECT_NEAR(watched.all.turns.doubt(), 1.0 / 4.0, 1e-12);
+  const Vec3 place = bouncing(8.0, 0.03);
+  watched.t += kStep;
+  watched.watch([&](double t) { return Vec3(place + (t - 8.0) * Vec3::UnitY()); }, 9.5);  // and on beyond 1
+  EXPECT_NEAR(watched.all.turns.doubt(), 2.0 / 5.0, 1e-12);
+}
+
 /// What the realistic tier's sensor makes of a motion, filtered as the track table does.
 struct Noisy {
   MotionLearner learned;
-  LearnedBounds room;
+  Experience all = good_experience();
   ImmFilter filter;
   Track last;
   RandomStream random{3};
@@ -242,7 +306,7 @@ struct Noisy {
     last = measured;
     filter.update(kStep, measured);
     filter.apply(last);
-    learned.observe(t, measured, last, 1, room);
+    learned.observe(t, measured, last, 1, all);
     if (learned.fit_due() > t || t < fitted_ + pause) return;
     learned.fit(t, measured, last);
     fitted_ = t;
@@ -259,9 +323,9 @@ TEST(MotionLearner, IsBelievedBetweenFitsThatAreRare) {
   for (double t = 0.0; t < 24.0; t += kStep) {
     noisy.observe(swing, t, 1.3);
     if (t < 16.0) continue;
-    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.room);
+    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.all);
     ++asked;
-    believed += forecast && forecast->replaces ? 1 : 0;
+    believed += forecast && relied_on(*forecast) ? 1 : 0;
   }
   EXPECT_GT(believed, 9 * asked / 10);
 }
@@ -274,8 +338,8 @@ TEST(MotionLearner, ForecastsMoreExactlyThanItIsMeasured) {
   for (double t = 0.0; t < 20.0; t += kStep) {
     noisy.observe(swing, t, 0.0);
     if (t < 12.0) continue;
-    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.room);
-    if (!forecast || !forecast->replaces) continue;
+    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.all);
+    if (!forecast || !std::holds_alternative<HarmonicMotion>(forecast->motion)) continue;
     ++asked;
     squares += (to_path(*forecast, 1.0, 0.1).position(1.0) - swing(t + 1.0)).squaredNorm();
   }
@@ -298,42 +362,57 @@ TEST(LearnedBounds, IsKnownWhereTwoTurnedAndNoneWasBeyond) {
 }
 
 TEST(MotionLearner, TurnsWhereOthersTurned) {
-  LearnedBounds room;
+  Experience all;
   for (const std::uint64_t name : {1U, 2U}) {
     MotionLearner learned;
     for (double t = 0.0; t < 1.5; t += kStep) {
       const double y = 0.03 * static_cast<double>(name);
       const Track track = exact([y](double s) { return bouncing(s, y); }, t);
-      learned.observe(t, track, track, name, room);
+      learned.observe(t, track, track, name, all);
     }
   }
   MotionLearner third;
   const Track track = exact([](double t) { return bouncing(t, -0.5); }, 0.0);
-  third.observe(0.0, track, track, 3, room);
-  const auto forecast = third.forecast(0.0, 0.0, track, room);
+  third.observe(0.0, track, track, 3, all);
+  const auto forecast = third.forecast(0.0, 0.0, track, all);
   ASSERT_TRUE(forecast.has_value());
   EXPECT_LT((to_path(*forecast, 3.0, 0.1).position(2.5) - bouncing(2.5, -0.5)).norm(), 0.1);
 }
 
-TEST(ObstaclesOf, AForecastReplacesItsTrackOrStandsBesideIt) {
+TEST(ObstaclesOf, PlainPredictionStandsBesideAForecastForAsLongAsItCounts) {
+  constexpr double kHorizon = 2.0, kTrust = 0.5;
   std::vector<Track> tracks(3);
-  for (std::size_t i = 0; i < 3; ++i) tracks[i].id = 10 + i;
-  Forecast replacing;
-  replacing.track = 1;
-  replacing.motion = HarmonicMotion{};
-  replacing.replaces = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    tracks[i].id = 10 + i;
+    tracks[i].radius = 0.4;
+    tracks[i].position_sigma = 0.1;
+    tracks[i].velocity = {1, 0, 0};
+    tracks[i].acceleration = {0, 1, 0};
+  }
+  Forecast relied;
+  relied.track = 1;
+  relied.motion = HarmonicMotion{};
+  relied.plain_until = 1.25;
   Forecast beside;
   beside.track = 2;
   beside.motion = BouncingMotion{};
-  const std::vector<Forecast> forecasts{replacing, beside};
-  const Obstacles obstacles = obstacles_of(tracks, forecasts, {}, 2.0, 0.1);
+  const std::vector<Forecast> forecasts{relied, beside};
+  const Obstacles obstacles = obstacles_of(tracks, forecasts, {}, kHorizon, 0.1, kTrust);
   ASSERT_EQ(obstacles.tracks.size(), 2U);
   EXPECT_EQ(obstacles.tracks[0].id, 10U);
   EXPECT_EQ(obstacles.tracks[1].id, 12U);
-  ASSERT_EQ(obstacles.paths.size(), 2U);
+  ASSERT_EQ(obstacles.paths.size(), 3U);
   EXPECT_EQ(obstacles.paths[0].id, 11U);
-  EXPECT_EQ(obstacles.paths[1].id, 12U);
-  EXPECT_NEAR(obstacles.paths[0].points.back().t, 2.0, 1e-9);
+  EXPECT_NEAR(obstacles.paths[0].points.back().t, kHorizon, 1e-9);
+  const planner::geometry::KnownPath& plain = obstacles.paths[1];
+  ASSERT_TRUE(plain.well_formed());
+  EXPECT_EQ(plain.id, 11U);
+  EXPECT_EQ(plain.until, 1.25);
+  EXPECT_EQ(plain.radius, tracks[1].radius);
+  EXPECT_EQ(plain.position_sigma, tracks[1].position_sigma);
+  for (const double t : {0.0, 0.5, 1.25})
+    EXPECT_LT((plain.position(t) - planner::geometry::predict_position(tracks[1], t, kTrust)).norm(), 0.002) << t;
+  EXPECT_EQ(obstacles.paths[2].id, 12U);
 }
 
 }  // namespace

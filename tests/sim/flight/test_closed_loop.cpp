@@ -282,6 +282,36 @@ TEST(ClosedLoop, ComesToATargetThatIsFreeForSecondsAndHoldsClearOfIt) {
   EXPECT_EQ(std::count_if(flown.hash.events.begin(), flown.hash.events.end(), arrived), 1);
 }
 
+// Each turns beside the way again and again, then walks on across it as the vehicle comes.
+TEST(ClosedLoop, EvadesWhatWalksOnWhereItUsedToTurn) {
+  constexpr double kSpeed = 1.5, kTurn = 1.2, kSwing = 1.5;  // m/s; m beside the way, and from there outwards
+  for (const double late : support::repetitions({0.4, 0.8})) {
+    SCOPED_TRACE(late);
+    config::Scenario scenario = straight();
+    scenario.target = {40, 0, 1.5};
+    scenario.time_limit = 60.0;
+    for (int i = 0; i < 6; ++i) {
+      const double x = 10.0 + 4.5 * i;
+      const double side = i % 2 == 0 ? 1.0 : -1.0;
+      const double crosses = 1.0 + x / 3.3 + late;
+      config::WaypointsMotion motion;
+      const auto put = [&](double t, double beside) {
+        motion.times.insert(motion.times.begin(), t);
+        motion.points.insert(motion.points.begin(), {x, side * beside, 1.5});
+      };
+      double t = crosses - kTurn / kSpeed;
+      bool near = true;
+      put(t + 20.0, kTurn - 20.0 * kSpeed);
+      for (; t > 0.0; t -= kSwing / kSpeed, near = !near) put(t, near ? kTurn : kTurn + kSwing);
+      put(0.0, near ? kTurn - t * kSpeed : kTurn + kSwing + t * kSpeed);
+      scenario.obstacles.push_back({config::SphereShape{0.4}, motion});
+    }
+    const Flown flown = fly(scenario, shipped_settings());
+    EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kReached) << flown.result.flight.reason;
+    EXPECT_GT(flown.result.min_clearance, 0.2);
+  }
+}
+
 /// A bit of everything that leaves the flight possible, in the default scenario.
 config::Scenario faulty_crossing() {
   using config::FaultKind;
