@@ -13,7 +13,7 @@
 #include "bridge/cdr/px4_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/frames/conversions.hpp"
-#include "bridge/tracking/clock_offset.hpp"
+#include "bridge/vehicle/link_delay.hpp"
 
 namespace jink::bridge::dds {
 
@@ -138,9 +138,9 @@ class DdsVehicleLink::Impl {
         ++counts_.other_writers;
         return;
       }
-      clock_offset_ = {};
+      delay_ = {};
     }
-    const auto late = clock_offset_.delay(now, system_now - static_cast<double>(message->timestamp_us) * 1e-6);
+    const auto late = delay_.of(now, system_now - static_cast<double>(message->timestamp_us) * 1e-6);
     if (!late) {
       ++counts_.late;
     } else if (!filter_.update(*message, now - *late, now)) {
@@ -157,7 +157,7 @@ class DdsVehicleLink::Impl {
 
   mutable std::mutex mutex_;  // guards the next block
   cdr::px4::LocalPositionFilter filter_;
-  tracking::ClockOffsetEstimator clock_offset_;  // of that writer
+  vehicle::StampDelay delay_;  // of that writer
   DdsVehicleCounts counts_;
   std::uint64_t writer_ = 0;
   double heard_ = -1.0;  // when that writer was

@@ -39,7 +39,7 @@ struct DdsVehicleCounts {
   int setpoint_readers = 0;         ///< matched now: those of the topic that has fewer
   std::uint64_t positions = 0;      ///< taken in
   std::uint64_t malformed = 0;      ///< of no layout known
-  std::uint64_t late = 0;           ///< more than ClockOffsetEstimator::kLongestDelay on their way
+  std::uint64_t late = 0;           ///< more than vehicle::StampDelay::kLongest on their way
   std::uint64_t dropped = 0;        ///< marked as valid, but not finite or absurd
   std::uint64_t other_writers = 0;  ///< messages of a second writer while the first one is alive
   std::uint64_t setpoints_sent = 0;
@@ -50,7 +50,7 @@ struct DdsVehicleCounts {
 ///
 /// State: both topics of vehicle_local_position are read, best effort and volatile, which matches PX4's best effort,
 /// transient local writers and any other; the payload's length tells its version (bridge/cdr/px4_messages). Stamps are
-/// `clock` at reception, less the delay that the message's own stamp tells (tracking::ClockOffsetEstimator). Where
+/// `clock` at reception, less the delay that the message's own stamp tells (vehicle::StampDelay). Where
 /// several writers publish, the first one heard is followed until it has been silent for kWriterSilence_s: two
 /// autopilots are never mixed. When DDS falls silent the stamp stays and ages.
 class DdsVehicleLink final : public vehicle::VehicleLink {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "planner/base/types.hpp"
+
 namespace jink::bridge::vehicle {
 
 /// By the link's round trips: half of the shortest of the newest ones, since what is longer waited somewhere. A link
@@ -36,6 +38,39 @@ class LinkDelay {
  private:
   std::array<double, kKept> round_trips_{};
   std::size_t count_ = 0;
+};
+
+/// By the stamps of what comes one way alone. Clocks drift apart, and who synchronises them sets them: what is less
+/// than kDoubt is taken for that. Not thread-safe.
+class StampDelay {
+ public:
+  /// s. Of a PX4 whose simulation runs 0.5 % slow, positions seemed up to 0.23 s old by the agent's clock, and twice a
+  /// minute its synchronisation made them new again (1.17, uXRCE-DDS agent 2.3).
+  static constexpr double kDoubt = 0.3;
+  static constexpr double kLongest = 1.0;  ///< s; what is older says nothing of the present
+  static constexpr double kWindow = 5.0;   ///< s, for once to twice of which the least age is remembered
+
+  /// s, from its stamp to its reception at `now`, of a message whose stamp was `age` old by our system's clock; nothing
+  /// where it is older than kLongest. Where the stamps are by another clock (the least age lately is not one that a
+  /// message can have) age counts from the least.
+  std::optional<double> of(double now, double age) {
+    if (now - begun_ > kWindow) {
+      before_ = now - begun_ > 2.0 * kWindow ? kNone : least_;
+      least_ = kNone;
+      begun_ = now;
+    }
+    const double floor = std::min(least_, before_);
+    const bool ours = floor >= -kDoubt && floor <= kLongest;
+    const double late = floor == kNone ? 0.0 : age - (ours ? 0.0 : floor);
+    if (late > kLongest) return std::nullopt;
+    least_ = std::min(least_, age);
+    return late > kDoubt ? late : 0.0;
+  }
+
+ private:
+  static constexpr double kNone = planner::base::kInfinity;
+  double begun_ = 0.0;
+  double least_ = kNone, before_ = kNone;  // age, since `begun_` and in the window before that
 };
 
 }  // namespace jink::bridge::vehicle
