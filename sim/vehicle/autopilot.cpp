@@ -60,7 +60,8 @@ Autopilot::Autopilot(const AutopilotOptions& options)
       wind_(options.wind, options.seed),
       estimator_(options.estimate, options.seed, model_.motion(), options.airborne),
       home_(start_position(options).x(), start_position(options).y(), options.ground_height),
-      hold_position_(start_position(options)) {
+      hold_position_(start_position(options)),
+      remote_control_(options.remote_control) {
   if (!options.airborne) return;
   armed_ = has_flown_ = true;
   landed_ = false;
