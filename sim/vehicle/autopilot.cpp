@@ -75,7 +75,7 @@ Autopilot::Autopilot(const AutopilotOptions& options)
 
 Result Autopilot::arm(bool force) {
   if (armed_) return Result::kAccepted;
-  const bool able = !crashed_ && landed_ && ready() && !refuses_arming_;
+  const bool able = !crashed_ && landed_ && model_.on_ground() && ready() && !refuses_arming_;
   if (!able || (!force && !prearm_ok())) {
     report(Severity::kCritical, "Arming denied: Resolve system health failures first");
     emit_event(EventKind::kArmingRefused);
