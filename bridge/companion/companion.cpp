@@ -211,8 +211,11 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
   motion_.steer(now, decision.motion, supervisor_.phase(), state);
   if (decision.motion == Motion::kBrake) stop(now);
   goal_ = goal_kind(decision.motion);
-  if (goal_ && planning_.due(now, *goal_)) {
-    planning_.start(now, intake_, motion_, goal(now, *goal_));
+  // On the ground the planner is to show that it plans; what is not flown to is not flown.
+  const bool proves = !state.in_air;
+  const std::optional<Goal::Kind> planned = proves ? std::optional(Goal::Kind::kClimb) : goal_;
+  if (planned && planning_.due(now, *planned)) {
+    planning_.start(now, intake_, motion_, goal(now, *planned));
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;
@@ -245,7 +248,7 @@ Goal Companion::goal(double now, Goal::Kind kind) {
     const planner::base::Box volume = flight_volume(mission_);
     return {kind, motion_.stop_point()->cwiseMax(volume.min).cwiseMin(volume.max)};
   }
-  if (kind == Goal::Kind::kClimb) return {kind, *motion_.takeoff_point()};
+  if (kind == Goal::Kind::kClimb) return {kind, motion_.takeoff_point().value_or(climb_end(mission_, intake_.state()))};
   // Who has arrived stays.
   if (supervisor_.arrived()) return {kind, end()};
   return {kind, route_.target(), /*visit=*/true, route_.stuck(now, intake_.state().motion.value.position)};

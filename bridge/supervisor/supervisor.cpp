@@ -92,7 +92,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
                    std::to_string(mission_.dds_domain);
     return MissingPeer::kTracks;
   }
-  if (!ready) {
+  if (in.flight.unsent_for > 0.0) {  // without them it is not ready
+    waiting_for_ = "setpoints to be sent";
+  } else if (!ready) {
     const std::string lacks = falls                      ? "disarmed in the air, it says"
                               : !state.health.empty()    ? state.health
                               : state.landed_state_known ? "local position"
@@ -106,6 +108,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     waiting_for_ = "a crewed aircraft to pass";
   } else if (!in.flight.overhead_free) {
     waiting_for_ = "the air above the vehicle to be free of obstacles";
+  } else if (const Hazard* hazard = find_hazard(Hazard::Reaction::kBrake, situation(in));
+             hazard != nullptr && !in.state.in_air) {  // it would brake as soon as it flies
+    waiting_for_ = "this to pass: " + std::string(hazard->what);
   }
   return MissingPeer::kNone;
 }
@@ -192,11 +197,14 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   }
   // What was there when it was waited for may be gone again.
   find_missing(in);
+  const bool plans = in.now - flight.newest_plan.value_or(-planner::base::kInfinity) <= settings_.stale_plan;
+  if (waiting_for_.empty() && !plans && !state.in_air && !state.armed) waiting_for_ = "the planner to plan";
   if (waiting_for_.empty()) {
     phase.not_ready_since.reset();
     decision.request = phase.request.ask(vehicle::Command::kArm, now, state);
     return decision;
   }
+  decision.motion = Motion::kStay;  // whether it is armed may only be told later
   if (!phase.not_ready_since) phase.not_ready_since = now;
   if (now - *phase.not_ready_since > kReadyAgain) stop(now, Outcome::kAborted, "waited in vain for " + waiting_for_);
   return decision;
@@ -228,7 +236,7 @@ bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> follow
 }
 
 Decision Supervisor::step(Climbing& phase, const Input& in) {
-  if (brakes_for_hazard(in)) return {Motion::kBrake, {}};
+  if (brakes_for_hazard(in, phase.since)) return {Motion::kBrake, {}};
   if (in.state.in_air && in.flight.at_takeoff_height) {
     phase_ = Flying{in.now};
     return {Motion::kFollow, {}};
