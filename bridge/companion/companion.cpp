@@ -15,6 +15,7 @@ constexpr double kLongStall = 1.0;      // s: PX4's COM_OF_LOSS_T; whatever held
 constexpr double kLow = 0.3;            // m, below min_height: less is noise
 constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
 constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
+constexpr double kSettling = 1.0;       // s, after which a vehicle that sinks is at rest in HOLD
 constexpr double kFlat = 0.05;          // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
@@ -153,7 +154,9 @@ void Companion::take_plan(double now) {
 
 // The vehicle is not left with the last setpoint because planning broke down: it brakes and gets HOLD.
 void Companion::stop_without_planner(double now) {
-  if (const auto failure = planning_.take_failure())
+  const auto failure = planning_.take_failure();
+  // To land takes no plans any more.
+  if (failure && supervisor_.phase() != supervisor::Phase::kLanding)
     supervisor_.stop(now, supervisor::Outcome::kAborted, "the planner failed: " + *failure, mission_.endings.planner);
 }
 
@@ -169,6 +172,10 @@ supervisor::FlightContext Companion::context(double now) {
   if (!supervisor_.flight_began()) context.danger = supervisor::danger(mission_, state.failsafe_parameters);
   context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;
   context.low = state.motion.value.position.z() < mission_.min_height - kLow;
+  const double height = state.motion.value.position.z() - mission_.ground;
+  const double at_rest = height + kSettling * std::min(0.0, state.motion.value.velocity.z());
+  context.nearly_down = at_rest < std::min(mission_.min_height - mission_.ground, kLandingHeight) - kLow &&
+                        height > -kLandingHeight;  // else the ground is not where it was thought to be
   const bool may_take_off =
       supervisor_.phase() == supervisor::Phase::kWaiting || supervisor_.phase() == supervisor::Phase::kEngaging;
   context.overhead_free = !may_take_off || state.in_air || overhead_free(now);

@@ -31,6 +31,7 @@ struct FlightContext {
   std::string danger{};         ///< why it is not to be flown with this autopilot, see danger(); empty: it may be
   bool ground_known = true;     ///< its height, if the mission counts from it
   bool low = false;             ///< clearly under min_height
+  bool nearly_down = false;     ///< so low, or will be where it comes to rest, that it is to be set down, not held
   double outside = 0.0;         ///< m, beside or under the geofence, of a vehicle that was inside
   double above = 0.0;           ///< m, likewise above its top
   bool aircraft_comes = false;  ///< with people on board, to less than well clear

@@ -41,8 +41,9 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason, config::E
   const Phase before = phase();
   if (before == Phase::kDone || before == Phase::kStopping || before == Phase::kHandover) return;
   auto* landing = std::get_if<Landing>(&phase_);
-  if (landing != nullptr && landing->forced) {  // once it has begun it goes on without us
+  if (landing != nullptr && (landing->forced || nearly_down_)) {  // once it has begun it goes on without us
     if (!landing->leave) landing->ending.reason += "; " + reason + ", the landing goes on";
+    landing->ending.outcome = Outcome::kAborted;  // whether it ends nobody watches
     landing->leave = true;
     return;
   }
@@ -65,6 +66,7 @@ Decision Supervisor::update(double now, const vehicle::VehicleState& state, cons
   const Input in{now, state, flight};
   CommandRequest* request = request_of(phase_);
   if (request != nullptr && flight.report) request->answer(*flight.report);
+  nearly_down_ = flight.nearly_down;
   hazard_.advance(now);
   if (ended_by_mode(in)) return {};
   stop_for_hazard(in);

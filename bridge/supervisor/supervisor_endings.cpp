@@ -87,7 +87,10 @@ Decision Supervisor::step(Stopping& phase, const Input& in) {
   if (!stopped) return {Motion::kBrake, {}};
   const bool lost = !in.state.local_position_ok || in.state.gps_lost;  // RETURN needs a position
   if (phase.then == config::EndsIn::kReturn && lost) phase.then = config::EndsIn::kLand;
-  if (phase.then == config::EndsIn::kLand && in.state.armed) {
+  // In HOLD its motors would run on, a hand's breadth above the ground or on it, for as long as nobody comes.
+  if (in.flight.nearly_down) phase.then = config::EndsIn::kLand;
+  const bool ours = in.state.armed && in.state.mode == vehicle::FlightMode::kOffboard;
+  if (phase.then == config::EndsIn::kLand && ours) {
     phase_ = Landing{in.now, std::move(phase.ending), /*forced=*/true};
   } else {
     Handover handover{in.now, std::move(phase.ending)};
@@ -108,6 +111,8 @@ Decision Supervisor::rescue(Handover& phase, const Input& in) {
   if (failsafe_flies(state) && !flies_by_itself(state.mode) && !grounded(state) && !pilots(state)) {
     if (!state.local_position_ok) {
       reason += "; without a position there is no HOLD, the failsafe has the vehicle";
+    } else if (flight.nearly_down) {
+      reason += "; it is nearly down, the failsafe lands it";
     } else if (phase.request.exhausted(now, state)) {
       const std::string refusal = phase.request.refusal();
       reason +=
