@@ -66,11 +66,14 @@ struct Hazard {
   Reaction reaction;
   config::EndsIn config::Endings::*ends_in;
   bool names_mode = false;  ///< in its text
+  bool decides = false;     ///< also how a flight ends that is being stopped for something else
 };
 /// In the order in which they count: the first that is present is told.
 [[nodiscard]] std::span<const Hazard> hazards();
 /// The first present with that reaction; null: none.
 [[nodiscard]] const Hazard* find_hazard(Hazard::Reaction reaction, const Situation& situation);
+/// The first present that decides.
+[[nodiscard]] const Hazard* find_deciding(const Situation& situation);
 
 /// The hazard for which a vehicle brakes, and for how long it has. Pure logic.
 class HazardWatch {

@@ -216,15 +216,18 @@ Situation Supervisor::situation(const Input& in, std::optional<double> following
   return {in.now, in.state, in.flight, mission_.tracks, settings_, mode_changes_.failsafe(), following_since};
 }
 
-// What ends a flight at once; and how it ends, where it is being stopped already.
+// What ends a flight at once; and how it ends, where it is being stopped already, for whatever else.
 void Supervisor::stop_for_hazard(const Input& in) {
   const Hazard* hazard = find_hazard(Hazard::Reaction::kStop, situation(in));
-  if (hazard == nullptr) return;
-  if (phase() == Phase::kClimbing || phase() == Phase::kFlying)
-    stop(in.now, Outcome::kAborted, std::string(hazard->what));
+  if (hazard != nullptr && (phase() == Phase::kClimbing || phase() == Phase::kFlying))
+    stop(in.now, Outcome::kAborted, std::string(hazard->what), mission_.endings.*hazard->ends_in);
+  const Hazard* deciding = find_deciding(situation(in));
   auto* stopping = std::get_if<Stopping>(&phase_);
-  if (stopping != nullptr && stopping->then != config::EndsIn::kLand)
-    stopping->then = mission_.endings.*hazard->ends_in;
+  if (deciding == nullptr || stopping == nullptr) return;
+  const config::EndsIn then = mission_.endings.*deciding->ends_in;
+  if (then == stopping->then || stopping->then == config::EndsIn::kLand) return;
+  stopping->then = then;
+  stopping->ending.reason += "; then " + std::string(deciding->what);
 }
 
 bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> following_since) {
@@ -270,8 +273,7 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
     if (phase.arrived) {
       stop(in.now, Outcome::kReached, "target reached, but it did not stay free within the time limit");
     } else {
-      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached",
-           in.flight.aircraft_comes ? mission_.endings.traffic : config::EndsIn::kHold);
+      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
     }
     return {Motion::kBrake, {}};
   }
