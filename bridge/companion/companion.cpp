@@ -96,10 +96,8 @@ void Companion::notice_stall(double now) {
 void Companion::take_state(double now) {
   const Intake::FrameChange change = intake_.take_state();
   reporter_.state(now, intake_.state());
-  if (!supervisor_.flight_began()) return;
-  if (change.rebooted)
-    supervisor_.stop(now, supervisor::Outcome::kAborted, "the autopilot began anew: its local frame may be another");
-  if (!change.shift) return;
+  if (change.rebooted && supervisor_.phase() != supervisor::Phase::kWaiting) supervisor_.began_anew(now);
+  if (!supervisor_.flight_began() || !change.shift) return;
   motion_.shift(*change.shift);
   place_mission();
   reporter_.estimate_reset(now, *change.shift);

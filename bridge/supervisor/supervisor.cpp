@@ -62,6 +62,14 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason, config::E
   }
 }
 
+void Supervisor::began_anew(double now) {
+  const std::string what = "the autopilot began anew: its local frame may be another";
+  Ending* ending = phase() == Phase::kDone ? nullptr : ending_of(phase_);
+  if (ending == nullptr) return stop(now, Outcome::kAborted, what);
+  ending->outcome = Outcome::kAborted;
+  ending->reason += "; then " + what;
+}
+
 Decision Supervisor::update(double now, const vehicle::VehicleState& state, const FlightContext& flight) {
   const Input in{now, state, flight};
   CommandRequest* request = request_of(phase_);
@@ -180,10 +188,11 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   }
   if (phase.request.exhausted(now, state)) {
     const std::string refusal = phase.request.refusal();
+    const std::string request(vehicle::to_string(*phase.request.command()));
     stop(now, Outcome::kAborted,
-         refusal.empty()
-             ? "the autopilot did not follow the request: " + std::string(vehicle::to_string(*phase.request.command()))
-             : refusal);
+         !refusal.empty()                                  ? refusal
+         : now - state.heartbeat_stamp > kHeartbeatTimeout ? "the autopilot fell silent before it granted: " + request
+                                                           : "the autopilot did not follow the request: " + request);
     return decision;
   }
   if (flight.report && flight.report->command == vehicle::Command::kOffboard && flight.report->accepted)

@@ -38,6 +38,9 @@ class Supervisor {
   /// Ends the flight: brakes, hands over. On the ground it just ends.
   void stop(double now, Outcome outcome, std::string reason, config::EndsIn then = config::EndsIn::kHold);
 
+  /// The autopilot began anew: ends the flight; of one that is being ended it says so.
+  void began_anew(double now);
+
   [[nodiscard]] Phase phase() const { return phase_of(phase_); }
   [[nodiscard]] bool done() const { return std::holds_alternative<Done>(phase_); }
   /// kNone before it is done.
