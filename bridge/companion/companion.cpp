@@ -15,6 +15,7 @@ constexpr double kLongStall = 1.0;      // s: PX4's COM_OF_LOSS_T; whatever held
 constexpr double kLow = 0.3;            // m, below min_height: less is noise
 constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
 constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
+constexpr double kSettling = 1.0;       // s, after which a vehicle that sinks is at rest in HOLD
 constexpr double kFlat = 0.05;          // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
@@ -95,10 +96,8 @@ void Companion::notice_stall(double now) {
 void Companion::take_state(double now) {
   const Intake::FrameChange change = intake_.take_state();
   reporter_.state(now, intake_.state());
-  if (!supervisor_.flight_began()) return;
-  if (change.rebooted)
-    supervisor_.stop(now, supervisor::Outcome::kAborted, "the autopilot began anew: its local frame may be another");
-  if (!change.shift) return;
+  if (change.rebooted && supervisor_.phase() != supervisor::Phase::kWaiting) supervisor_.began_anew(now);
+  if (!supervisor_.flight_began() || !change.shift) return;
   motion_.shift(*change.shift);
   place_mission();
   reporter_.estimate_reset(now, *change.shift);
@@ -153,7 +152,9 @@ void Companion::take_plan(double now) {
 
 // The vehicle is not left with the last setpoint because planning broke down: it brakes and gets HOLD.
 void Companion::stop_without_planner(double now) {
-  if (const auto failure = planning_.take_failure())
+  const auto failure = planning_.take_failure();
+  // To land takes no plans any more.
+  if (failure && supervisor_.phase() != supervisor::Phase::kLanding)
     supervisor_.stop(now, supervisor::Outcome::kAborted, "the planner failed: " + *failure, mission_.endings.planner);
 }
 
@@ -169,6 +170,10 @@ supervisor::FlightContext Companion::context(double now) {
   if (!supervisor_.flight_began()) context.danger = supervisor::danger(mission_, state.failsafe_parameters);
   context.ground_known = intake_.ground() || given_.heights != config::Heights::kGround;
   context.low = state.motion.value.position.z() < mission_.min_height - kLow;
+  const double height = state.motion.value.position.z() - mission_.ground;
+  const double at_rest = height + kSettling * std::min(0.0, state.motion.value.velocity.z());
+  context.nearly_down = at_rest < std::min(mission_.min_height - mission_.ground, kLandingHeight) - kLow &&
+                        height > -kLandingHeight;  // else the ground is not where it was thought to be
   const bool may_take_off =
       supervisor_.phase() == supervisor::Phase::kWaiting || supervisor_.phase() == supervisor::Phase::kEngaging;
   context.overhead_free = !may_take_off || state.in_air || overhead_free(now);
@@ -211,8 +216,11 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
   motion_.steer(now, decision.motion, supervisor_.phase(), state);
   if (decision.motion == Motion::kBrake) stop(now);
   goal_ = goal_kind(decision.motion);
-  if (goal_ && planning_.due(now, *goal_)) {
-    planning_.start(now, intake_, motion_, goal(now, *goal_));
+  // On the ground the planner is to show that it plans; what is not flown to is not flown.
+  const bool proves = !state.in_air;
+  const std::optional<Goal::Kind> planned = proves ? std::optional(Goal::Kind::kClimb) : goal_;
+  if (planned && planning_.due(now, *planned)) {
+    planning_.start(now, intake_, motion_, goal(now, *planned));
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;
@@ -245,7 +253,7 @@ Goal Companion::goal(double now, Goal::Kind kind) {
     const planner::base::Box volume = flight_volume(mission_);
     return {kind, motion_.stop_point()->cwiseMax(volume.min).cwiseMin(volume.max)};
   }
-  if (kind == Goal::Kind::kClimb) return {kind, *motion_.takeoff_point()};
+  if (kind == Goal::Kind::kClimb) return {kind, motion_.takeoff_point().value_or(climb_end(mission_, intake_.state()))};
   // Who has arrived stays.
   if (supervisor_.arrived()) return {kind, end()};
   return {kind, route_.target(), /*visit=*/true, route_.stuck(now, intake_.state().motion.value.position)};

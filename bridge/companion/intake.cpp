@@ -56,7 +56,7 @@ bool Intake::take_tracks(double now) {
   }
   // Sooner than that is a hazard: by then the tracks would be forgotten.
   const double missed_after = kMissedAfter * mission_.tracks.coast_s;
-  table_.miss(table_.lost_writers(now, missed_after, flight_began_) > 0 ||
+  table_.miss(table_.lost_writers(now, missed_after, watched_since_) > 0 ||
               now - newest_tracks().value_or(now) > missed_after);
   if (any && state_.motion.silence(now) <= settings_.companion.stale_state)
     table_.find_self(now, base::position_at(state_.motion, now), state_.motion.value.velocity, mission_.vehicle.radius);
@@ -98,7 +98,9 @@ std::optional<Intake::Approach> Intake::approach(double now) const {
 
 int Intake::lost_writers(double now, std::optional<double> flight_began) {
   flight_began_ = flight_began.value_or(planner::base::kInfinity);
-  return table_.lost_writers(now, mission_.tracks.timeout_s, flight_began_);
+  const int lost = table_.lost_writers(now, mission_.tracks.timeout_s, watched_since_);
+  if (!flight_began && lost == 0) watched_since_ = now - mission_.tracks.timeout_s;
+  return lost;
 }
 
 }  // namespace jink::bridge::companion

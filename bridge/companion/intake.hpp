@@ -49,8 +49,8 @@ class Intake {
   [[nodiscard]] std::optional<double> newest_tracks() const;
   /// The first that the mission names and that is silent; empty: there is none.
   [[nodiscard]] std::string silent_writer(double now) const;
-  /// Writers that watched in this flight, and watch no more, nor anybody in their place. `flight_began`: none: it has
-  /// not.
+  /// Writers that watched in this flight, or when all was there for it last, and watch no more, nor anybody in their
+  /// place. `flight_began`: none: it has not.
   [[nodiscard]] int lost_writers(double now, std::optional<double> flight_began);
   /// The crewed aircraft that is the first to come to less than well clear, and in how many seconds.
   struct Approach {
@@ -74,6 +74,7 @@ class Intake {
   Vec3 estimate_shift_ = Vec3::Zero();
   std::optional<double> ground_;
   double flight_began_ = planner::base::kInfinity;
+  double watched_since_ = -planner::base::kInfinity;  // whose last word was before that was not there for this flight
   std::uint64_t elsewhere_ = 0;
   std::set<std::uint64_t> at_home_;           // writers that told of something near
   std::vector<tracking::Aircraft> aircraft_;  // of the newest message that had some

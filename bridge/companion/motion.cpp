@@ -75,7 +75,8 @@ std::optional<MotionControl::StopStart> MotionControl::stop_start(double now, co
   const bool away = lost(now, state);
   if (stop_point_ && !away && !again) return std::nullopt;
   const bool says_nothing = away || (!stop_point_ && stream_.plan(now).empty());
-  if (says_nothing && known(now, state))
+  // What stood on the ground when it was heard last has not moved, and is not to.
+  if (says_nothing && (known(now, state) || !state.in_air))
     return StopStart{{now, state.motion.value.position, state.motion.value.velocity, Vec3::Zero()}, false};
   return StopStart{stream_.reference(now)};
 }

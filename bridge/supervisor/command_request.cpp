@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/supervisor/command_request.hpp"
 
+#include <algorithm>
+
 namespace jink::bridge::supervisor {
 namespace {
 
@@ -28,7 +30,7 @@ void CommandRequest::answer(const vehicle::CommandReport& report) {
 bool CommandRequest::exhausted(double now, const vehicle::VehicleState& state) const {
   if (!asked_) return false;
   if (asked_->tries >= kMostTries) return now - asked_->at >= kAskAgain;
-  return state.heartbeat_stamp <= asked_->at && now - asked_->at >= kMostTries * kAskAgain;
+  return now - std::max(asked_->at, state.heartbeat_stamp) >= kMostTries * kAskAgain;
 }
 
 std::optional<vehicle::Command> CommandRequest::command() const {

@@ -58,6 +58,15 @@ const Ending* ending_of(const FlightPhase& phase) {
       phase);
 }
 
+Ending* ending_of(FlightPhase& phase) {
+  return std::visit(
+      [](auto& p) -> Ending* {
+        if constexpr (requires { p.ending; }) return &p.ending;
+        return nullptr;
+      },
+      phase);
+}
+
 CommandRequest* request_of(FlightPhase& phase) {
   return std::visit(
       [](auto& p) -> CommandRequest* {

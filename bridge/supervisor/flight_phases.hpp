@@ -96,6 +96,7 @@ using FlightPhase = std::variant<Waiting, Engaging, Climbing, Flying, Stopping, 
 [[nodiscard]] Phase phase_of(const FlightPhase& phase);
 /// Null where the phase has none.
 [[nodiscard]] const Ending* ending_of(const FlightPhase& phase);
+[[nodiscard]] Ending* ending_of(FlightPhase& phase);
 [[nodiscard]] CommandRequest* request_of(FlightPhase& phase);
 
 }  // namespace jink::bridge::supervisor

@@ -19,7 +19,7 @@ using E = config::Endings;
 
 constexpr Hazard kHazards[] = {
     {"the battery is critical", [](const S& s) { return s.state.battery == vehicle::BatteryState::kCritical; },
-     Hazard::Reaction::kStop, &E::battery},
+     Hazard::Reaction::kStop, &E::battery, /*names_mode=*/false, /*decides=*/true},
     {"the vehicle's position is stale",
      [](const S& s) { return s.state.motion.silence(s.now) > s.settings.stale_state; }, kBrake, &E::link},
     {"the vehicle's position comes too late", [](const S& s) { return s.state.motion.delay() > kLatest; }, kBrake,
@@ -30,7 +30,8 @@ constexpr Hazard kHazards[] = {
     {"the autopilot has lost its position", [](const S& s) { return !s.state.local_position_ok; }, kBrake,
      &E::position},
     {"the autopilot has lost its GPS", [](const S& s) { return s.state.gps_lost; }, kBrake, &E::position},
-    {"a crewed aircraft comes too near", [](const S& s) { return s.flight.aircraft_comes; }, kBrake, &E::traffic},
+    {"a crewed aircraft comes too near", [](const S& s) { return s.flight.aircraft_comes; }, kBrake, &E::traffic,
+     /*names_mode=*/false, /*decides=*/true},
     {"the vehicle has left the geofence", [](const S& s) { return s.flight.outside > kBreach; }, kBrake, &E::breach},
     {"the vehicle is above the geofence", [](const S& s) { return s.flight.above > kBreach; }, kBrake, &E::breach},
     {"the vehicle cannot follow its setpoints", [](const S& s) { return s.flight.cannot_follow; }, kBrake, &E::breach},
@@ -60,6 +61,13 @@ std::span<const Hazard> hazards() {
 const Hazard* find_hazard(Hazard::Reaction reaction, const Situation& situation) {
   const auto* const found = std::find_if(std::begin(kHazards), std::end(kHazards), [&](const Hazard& hazard) {
     return hazard.reaction == reaction && hazard.present(situation);
+  });
+  return found == std::end(kHazards) ? nullptr : found;
+}
+
+const Hazard* find_deciding(const Situation& situation) {
+  const auto* const found = std::find_if(std::begin(kHazards), std::end(kHazards), [&](const Hazard& hazard) {
+    return hazard.decides && hazard.present(situation);
   });
   return found == std::end(kHazards) ? nullptr : found;
 }

@@ -31,6 +31,7 @@ struct FlightContext {
   std::string danger{};         ///< why it is not to be flown with this autopilot, see danger(); empty: it may be
   bool ground_known = true;     ///< its height, if the mission counts from it
   bool low = false;             ///< clearly under min_height
+  bool nearly_down = false;     ///< so low, or will be where it comes to rest, that it is to be set down, not held
   double outside = 0.0;         ///< m, beside or under the geofence, of a vehicle that was inside
   double above = 0.0;           ///< m, likewise above its top
   bool aircraft_comes = false;  ///< with people on board, to less than well clear
@@ -65,11 +66,14 @@ struct Hazard {
   Reaction reaction;
   config::EndsIn config::Endings::*ends_in;
   bool names_mode = false;  ///< in its text
+  bool decides = false;     ///< also how a flight ends that is being stopped for something else
 };
 /// In the order in which they count: the first that is present is told.
 [[nodiscard]] std::span<const Hazard> hazards();
 /// The first present with that reaction; null: none.
 [[nodiscard]] const Hazard* find_hazard(Hazard::Reaction reaction, const Situation& situation);
+/// The first present that decides.
+[[nodiscard]] const Hazard* find_deciding(const Situation& situation);
 
 /// The hazard for which a vehicle brakes, and for how long it has. Pure logic.
 class HazardWatch {

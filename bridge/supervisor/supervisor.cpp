@@ -41,8 +41,9 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason, config::E
   const Phase before = phase();
   if (before == Phase::kDone || before == Phase::kStopping || before == Phase::kHandover) return;
   auto* landing = std::get_if<Landing>(&phase_);
-  if (landing != nullptr && landing->forced) {  // once it has begun it goes on without us
+  if (landing != nullptr && (landing->forced || nearly_down_)) {  // once it has begun it goes on without us
     if (!landing->leave) landing->ending.reason += "; " + reason + ", the landing goes on";
+    landing->ending.outcome = Outcome::kAborted;  // whether it ends nobody watches
     landing->leave = true;
     return;
   }
@@ -61,10 +62,19 @@ void Supervisor::stop(double now, Outcome outcome, std::string reason, config::E
   }
 }
 
+void Supervisor::began_anew(double now) {
+  const std::string what = "the autopilot began anew: its local frame may be another";
+  Ending* ending = phase() == Phase::kDone ? nullptr : ending_of(phase_);
+  if (ending == nullptr) return stop(now, Outcome::kAborted, what);
+  ending->outcome = Outcome::kAborted;
+  ending->reason += "; then " + what;
+}
+
 Decision Supervisor::update(double now, const vehicle::VehicleState& state, const FlightContext& flight) {
   const Input in{now, state, flight};
   CommandRequest* request = request_of(phase_);
   if (request != nullptr && flight.report) request->answer(*flight.report);
+  nearly_down_ = flight.nearly_down;
   hazard_.advance(now);
   if (ended_by_mode(in)) return {};
   stop_for_hazard(in);
@@ -92,7 +102,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
                    std::to_string(mission_.dds_domain);
     return MissingPeer::kTracks;
   }
-  if (!ready) {
+  if (in.flight.unsent_for > 0.0) {  // without them it is not ready
+    waiting_for_ = "setpoints to be sent";
+  } else if (!ready) {
     const std::string lacks = falls                      ? "disarmed in the air, it says"
                               : !state.health.empty()    ? state.health
                               : state.landed_state_known ? "local position"
@@ -106,6 +118,9 @@ MissingPeer Supervisor::find_missing(const Input& in) {
     waiting_for_ = "a crewed aircraft to pass";
   } else if (!in.flight.overhead_free) {
     waiting_for_ = "the air above the vehicle to be free of obstacles";
+  } else if (const Hazard* hazard = find_hazard(Hazard::Reaction::kBrake, situation(in));
+             hazard != nullptr && !in.state.in_air) {  // it would brake as soon as it flies
+    waiting_for_ = "this to pass: " + std::string(hazard->what);
   }
   return MissingPeer::kNone;
 }
@@ -173,10 +188,11 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   }
   if (phase.request.exhausted(now, state)) {
     const std::string refusal = phase.request.refusal();
+    const std::string request(vehicle::to_string(*phase.request.command()));
     stop(now, Outcome::kAborted,
-         refusal.empty()
-             ? "the autopilot did not follow the request: " + std::string(vehicle::to_string(*phase.request.command()))
-             : refusal);
+         !refusal.empty()                                  ? refusal
+         : now - state.heartbeat_stamp > kHeartbeatTimeout ? "the autopilot fell silent before it granted: " + request
+                                                           : "the autopilot did not follow the request: " + request);
     return decision;
   }
   if (flight.report && flight.report->command == vehicle::Command::kOffboard && flight.report->accepted)
@@ -192,11 +208,14 @@ Decision Supervisor::step(Engaging& phase, const Input& in) {
   }
   // What was there when it was waited for may be gone again.
   find_missing(in);
+  const bool plans = in.now - flight.newest_plan.value_or(-planner::base::kInfinity) <= settings_.stale_plan;
+  if (waiting_for_.empty() && !plans && !state.in_air && !state.armed) waiting_for_ = "the planner to plan";
   if (waiting_for_.empty()) {
     phase.not_ready_since.reset();
     decision.request = phase.request.ask(vehicle::Command::kArm, now, state);
     return decision;
   }
+  decision.motion = Motion::kStay;  // whether it is armed may only be told later
   if (!phase.not_ready_since) phase.not_ready_since = now;
   if (now - *phase.not_ready_since > kReadyAgain) stop(now, Outcome::kAborted, "waited in vain for " + waiting_for_);
   return decision;
@@ -206,15 +225,18 @@ Situation Supervisor::situation(const Input& in, std::optional<double> following
   return {in.now, in.state, in.flight, mission_.tracks, settings_, mode_changes_.failsafe(), following_since};
 }
 
-// What ends a flight at once; and how it ends, where it is being stopped already.
+// What ends a flight at once; and how it ends, where it is being stopped already, for whatever else.
 void Supervisor::stop_for_hazard(const Input& in) {
   const Hazard* hazard = find_hazard(Hazard::Reaction::kStop, situation(in));
-  if (hazard == nullptr) return;
-  if (phase() == Phase::kClimbing || phase() == Phase::kFlying)
-    stop(in.now, Outcome::kAborted, std::string(hazard->what));
+  if (hazard != nullptr && (phase() == Phase::kClimbing || phase() == Phase::kFlying))
+    stop(in.now, Outcome::kAborted, std::string(hazard->what), mission_.endings.*hazard->ends_in);
+  const Hazard* deciding = find_deciding(situation(in));
   auto* stopping = std::get_if<Stopping>(&phase_);
-  if (stopping != nullptr && stopping->then != config::EndsIn::kLand)
-    stopping->then = mission_.endings.*hazard->ends_in;
+  if (deciding == nullptr || stopping == nullptr) return;
+  const config::EndsIn then = mission_.endings.*deciding->ends_in;
+  if (then == stopping->then || stopping->then == config::EndsIn::kLand) return;
+  stopping->then = then;
+  stopping->ending.reason += "; then " + std::string(deciding->what);
 }
 
 bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> following_since) {
@@ -228,7 +250,7 @@ bool Supervisor::brakes_for_hazard(const Input& in, std::optional<double> follow
 }
 
 Decision Supervisor::step(Climbing& phase, const Input& in) {
-  if (brakes_for_hazard(in)) return {Motion::kBrake, {}};
+  if (brakes_for_hazard(in, phase.since)) return {Motion::kBrake, {}};
   if (in.state.in_air && in.flight.at_takeoff_height) {
     phase_ = Flying{in.now};
     return {Motion::kFollow, {}};
@@ -260,8 +282,7 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
     if (phase.arrived) {
       stop(in.now, Outcome::kReached, "target reached, but it did not stay free within the time limit");
     } else {
-      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached",
-           in.flight.aircraft_comes ? mission_.endings.traffic : config::EndsIn::kHold);
+      stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
     }
     return {Motion::kBrake, {}};
   }

@@ -27,6 +27,7 @@ struct Decision {
 /// the flight and the stream at once: a pilot's word is the last one. A failsafe of the autopilot is another matter: it
 /// may pass when the setpoints arrive again, so it counts as a hazard first; where it stays, LAND, RETURN and HOLD are
 /// left to it, and where it only sinks, HOLD is asked for, without setpoints, which would take it back to OFFBOARD.
+/// What is nearly down is set down instead of held.
 class Supervisor {
  public:
   Supervisor(const config::Mission& mission, const SupervisorSettings& settings)
@@ -36,6 +37,9 @@ class Supervisor {
   Decision update(double now, const vehicle::VehicleState& state, const FlightContext& flight);
   /// Ends the flight: brakes, hands over. On the ground it just ends.
   void stop(double now, Outcome outcome, std::string reason, config::EndsIn then = config::EndsIn::kHold);
+
+  /// The autopilot began anew: ends the flight; of one that is being ended it says so.
+  void began_anew(double now);
 
   [[nodiscard]] Phase phase() const { return phase_of(phase_); }
   [[nodiscard]] bool done() const { return std::holds_alternative<Done>(phase_); }
@@ -97,6 +101,7 @@ class Supervisor {
   HazardWatch hazard_;
   std::optional<double> flight_began_;
   std::string waiting_for_;
+  bool nearly_down_ = false;  // as of the last step
 };
 
 }  // namespace jink::bridge::supervisor

@@ -37,6 +37,28 @@ bool pilots(const vehicle::VehicleState& state) {
   return !flies_by_itself(state.mode) && (state.remote_control || !ours);
 }
 
+// It is in a mode that was not asked for, by nobody's wish but the autopilot's own.
+bool by_failsafe(const vehicle::VehicleState& state) {
+  const bool told = state.intended_mode != vehicle::FlightMode::kUnknown;
+  return told ? state.intended_mode != state.mode : state.failsafe;
+}
+
+std::string failsafe_words(const vehicle::VehicleState& state) {
+  return "the autopilot's failsafe took over, " + named(state.mode) + (pilots(state) ? ", and left to the pilot" : "");
+}
+
+std::string takeover_words(const vehicle::VehicleState& state) {
+  return "the mode was changed to " + std::string(vehicle::to_string(state.mode)) + " by pilot or autopilot";
+}
+
+// With what it has come to instead of what was asked for.
+Ending ended_in(Ending ending, bool returns, const vehicle::VehicleState& state) {
+  if (state.mode == (returns ? vehicle::FlightMode::kReturn : vehicle::FlightMode::kHold)) return ending;
+  ending.reason += "; then " + (by_failsafe(state) ? failsafe_words(state) : takeover_words(state));
+  if (by_failsafe(state)) ending.outcome = Outcome::kAborted;
+  return ending;
+}
+
 }  // namespace
 
 Ending Supervisor::ending_with(const std::string& what) const {
@@ -55,8 +77,7 @@ bool Supervisor::ended_by_mode(const Input& in) {
     case ModeChange::kFailsafe:
       return left_to_failsafe(in);
     case ModeChange::kTakeover:
-      finish(ending_with("the mode was changed to " + std::string(vehicle::to_string(in.state.mode)) +
-                         " by pilot or autopilot"));
+      finish(ending_with(takeover_words(in.state)));
       return true;
     case ModeChange::kDisarmed:
       finish(ending_with("the autopilot disarmed in flight"));
@@ -67,11 +88,9 @@ bool Supervisor::ended_by_mode(const Input& in) {
 
 // True where the failsafe has the vehicle for good; otherwise HOLD is asked for.
 bool Supervisor::left_to_failsafe(const Input& in) {
-  const bool pilot = pilots(in.state);
-  Ending ending = ending_with("the autopilot's failsafe took over, " + named(in.state.mode) +
-                              (pilot ? ", and left to the pilot" : ""));
+  Ending ending = ending_with(failsafe_words(in.state));
   hazard_.clear();
-  if (pilot || flies_by_itself(in.state.mode)) {
+  if (pilots(in.state) || flies_by_itself(in.state.mode)) {
     finish(std::move(ending));
     return true;
   }
@@ -87,7 +106,10 @@ Decision Supervisor::step(Stopping& phase, const Input& in) {
   if (!stopped) return {Motion::kBrake, {}};
   const bool lost = !in.state.local_position_ok || in.state.gps_lost;  // RETURN needs a position
   if (phase.then == config::EndsIn::kReturn && lost) phase.then = config::EndsIn::kLand;
-  if (phase.then == config::EndsIn::kLand && in.state.armed) {
+  // In HOLD its motors would run on, a hand's breadth above the ground or on it, for as long as nobody comes.
+  if (in.flight.nearly_down) phase.then = config::EndsIn::kLand;
+  const bool ours = in.state.armed && in.state.mode == vehicle::FlightMode::kOffboard;
+  if (phase.then == config::EndsIn::kLand && ours) {
     phase_ = Landing{in.now, std::move(phase.ending), /*forced=*/true};
   } else {
     Handover handover{in.now, std::move(phase.ending)};
@@ -108,6 +130,8 @@ Decision Supervisor::rescue(Handover& phase, const Input& in) {
   if (failsafe_flies(state) && !flies_by_itself(state.mode) && !grounded(state) && !pilots(state)) {
     if (!state.local_position_ok) {
       reason += "; without a position there is no HOLD, the failsafe has the vehicle";
+    } else if (flight.nearly_down) {
+      reason += "; it is nearly down, the failsafe lands it";
     } else if (phase.request.exhausted(now, state)) {
       const std::string refusal = phase.request.refusal();
       reason +=
@@ -124,6 +148,14 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
   if (phase.rescue) return rescue(phase, in);
   const auto& [now, state, flight] = in;
   Ending& ending = phase.ending;
+  // PX4 says of whatever is disarmed that it has landed.
+  const bool up = ending.outcome == Outcome::kReached || !(flight.nearly_down || phase.landing_interrupted);
+  if (!state.armed && flight_began_ && up) {
+    ending.outcome = Outcome::kAborted;
+    ending.reason += "; then the autopilot disarmed in flight";
+    finish(std::move(ending));
+    return {};
+  }
   const bool offboard = state.mode == vehicle::FlightMode::kOffboard;
   const bool landing = phase.landing_interrupted && state.mode == vehicle::FlightMode::kLand;
   const Motion motion = landing                               ? Motion::kNone
@@ -138,13 +170,14 @@ Decision Supervisor::step(Handover& phase, const Input& in) {
     return {};
   }
   if (failsafe_flies(state) && !offboard && !flies_by_itself(state.mode) && !pilots(state)) {
-    ending.reason += "; then the autopilot's failsafe took over, " + named(state.mode);
+    ending.reason += "; then " + failsafe_words(state);
     ending.outcome = Outcome::kAborted;
     phase.rescue = true;
     return rescue(phase, in);
   }
   // What was asked for is there; or somebody chose another mode, and that stands.
   if ((!offboard && !landing) || grounded(state)) {
+    if (!grounded(state) && mode_changes_.offboard_seen()) ending = ended_in(std::move(ending), phase.returns, state);
     finish(std::move(ending));
     return {};
   }
@@ -170,6 +203,7 @@ Decision Supervisor::step(Landing& phase, const Input& in) {
     phase.ending.reason += ", but " + what;
     phase.ending.outcome = Outcome::kAborted;
   };
+  const bool silent = now - state.heartbeat_stamp > kHeartbeatTimeout;
   if (grounded(state)) {
     finish(std::move(phase.ending));
     return {};
@@ -177,7 +211,7 @@ Decision Supervisor::step(Landing& phase, const Input& in) {
   if (state.mode == vehicle::FlightMode::kLand) {
     phase.begun = true;
     const bool endless = !phase.leave && now - phase.since > kLandingTimeout;
-    if (endless) fail("the landing did not end");
+    if (endless) fail(silent ? "the autopilot fell silent: whether it landed is not known" : "the landing did not end");
     if (endless || phase.leave) finish(std::move(phase.ending));
     return {};
   }
@@ -185,11 +219,16 @@ Decision Supervisor::step(Landing& phase, const Input& in) {
   const bool touched_down = phase.begun && !state.in_air && now - phase.since <= kLandingTimeout;
   if (touched_down && state.mode == vehicle::FlightMode::kOffboard) return {};
   if (state.mode != vehicle::FlightMode::kOffboard) {
-    fail("the landing was taken over: " + named(state.mode));
+    fail(by_failsafe(state) ? failsafe_words(state) : "the landing was taken over: " + named(state.mode));
     finish(std::move(phase.ending));
     return {};
   }
   if (phase.request.exhausted(now, state)) {
+    if (silent) {
+      fail("the autopilot fell silent: whether it lands is not known");
+      finish(std::move(phase.ending));
+      return {};
+    }
     const std::string refusal = phase.request.refusal();
     fail("the autopilot does not land" + (refusal.empty() ? "" : ": " + refusal));
     Handover next{now, std::move(phase.ending)};

@@ -7,13 +7,12 @@
 #include <utility>
 
 #include "bridge/tracking/track_inbox.hpp"
+#include "bridge/vehicle/command_tracker.hpp"
 #include "bridge/vehicle/px4.hpp"
 
 namespace jink::sim::flight {
 namespace {
 
-constexpr double kAnswerTimeout = 0.5;      // s, MAVSDK's, after which a command is sent again
-constexpr int kRetries = 3;                 // MAVSDK's
 constexpr double kLinkUp = 0.3;             // s after a boot, when the autopilot begins to listen
 constexpr double kFirstHeartbeat = 1.3;     // s after a boot
 constexpr std::uint8_t kStateCritical = 5;  // MAV_STATE
@@ -80,7 +79,7 @@ void VirtualLink::note_reset(const Vec3& by) {
 
 void VirtualLink::advance(double now) {
   now_ = now;
-  send_again();
+  give_up();
   exchange();
 }
 
@@ -98,7 +97,7 @@ bool VirtualLink::send(const bridge::vehicle::Setpoint& setpoint) {
 
 void VirtualLink::request(bridge::vehicle::Command command) {
   const CommandPacket packet{command, commands_++};
-  unanswered_.push_back({packet, now_, 0});
+  unanswered_.push_back({packet, now_});
   up_.push(now_, packet);
   exchange();
 }
@@ -154,12 +153,16 @@ vehicle::Result VirtualLink::act(bridge::vehicle::Command command) {
   return vehicle::Result::kUnsupported;
 }
 
-/// Stamps are those of its arrival, less half the round trip, as a receiver has no others.
+/// Stamps are those of its arrival, less half the round trip, as a receiver has no others. An autopilot that does not
+/// know where it is tells no position.
 void VirtualLink::deliver(const bridge::vehicle::VehicleState& state) {
+  const auto motion_before = state_.motion;
   state_ = state;
-  state_.heartbeat_stamp = state_.motion.received = now_;
+  state_.heartbeat_stamp = now_;
   state_.link_delay = link_delay_;
+  state_.motion.received = now_;
   state_.motion.stamp = now_ - state_.link_delay;
+  if (!state.local_position_ok) state_.motion = motion_before;
 }
 
 void VirtualLink::deliver(const AnswerPacket& answer) {
@@ -170,15 +173,10 @@ void VirtualLink::deliver(const AnswerPacket& answer) {
   reports_.push_back(answer.report);
 }
 
-void VirtualLink::send_again() {
-  for (Unanswered& waiting : unanswered_) {
-    if (now_ - waiting.sent < kAnswerTimeout) continue;
-    waiting.sent = now_;
-    if (++waiting.retries <= kRetries) up_.push(now_, waiting.packet);
-  }
+void VirtualLink::give_up() {
   std::erase_if(unanswered_, [&](const Unanswered& waiting) {
-    if (waiting.retries <= kRetries) return false;
-    reports_.push_back({waiting.packet.command, false, "no answer"});
+    if (now_ - waiting.sent < bridge::vehicle::CommandTracker::kAnswer_s) return false;
+    reports_.push_back({waiting.packet.command, false, bridge::vehicle::CommandTracker::kNoAnswer});
     return true;
   });
 }
@@ -199,7 +197,8 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.local_position_ok = autopilot_.position_valid();
   state.gps_lost = !autopilot_.estimator().gps();
   state.in_air = autopilot_.landed_state() != vehicle::LandedState::kOnGround;
-  state.health = state.local_position_ok ? "" : "local position";
+  if (!autopilot_.prearm_ok()) state.health = "pre-arm check";
+  if (!state.local_position_ok) state.health += state.health.empty() ? "local position" : ", local position";
   state.failsafe = autopilot_.heartbeat().system_status >= kStateCritical;
   state.estimate_resets = resets_;
   state.estimate_shift = shift_;
@@ -209,6 +208,7 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
   state.failsafe_parameters.return_height = parameters.real("RTL_RETURN_ALT");
   state.origin = frame_.to_geodetic(autopilot_.estimator().origin());
   state.system_id = static_cast<std::uint32_t>(autopilot_.options().system_id);
+  state.reboots = static_cast<std::uint32_t>(autopilot_.reboots());
   return state;
 }
 

@@ -22,8 +22,8 @@
 namespace jink::sim::flight {
 
 /// Telemetry is one packet each time it is sent, a setpoint or command one packet up, the answer to a command one down.
-/// Unimpaired, all of them arrive at once. A command that is not answered is sent again as MAVSDK does, three times
-/// after half a second each, then reported as unanswered.
+/// Unimpaired, all of them arrive at once. As on the real link (bridge/mavsdk) a command is sent once, and reported as
+/// unanswered after a second.
 class VirtualLink final : public bridge::vehicle::VehicleLink {
  public:
   /// The autopilot outlives the link.
@@ -55,7 +55,6 @@ class VirtualLink final : public bridge::vehicle::VehicleLink {
   struct Unanswered {
     CommandPacket packet;
     double sent = 0.0;
-    int retries = 0;
   };
   using UpPacket = std::variant<bridge::vehicle::Setpoint, CommandPacket>;
   using DownPacket = std::variant<bridge::vehicle::VehicleState, AnswerPacket>;
@@ -65,7 +64,7 @@ class VirtualLink final : public bridge::vehicle::VehicleLink {
   void deliver(const CommandPacket& packet);
   void deliver(const bridge::vehicle::VehicleState& state);
   void deliver(const AnswerPacket& answer);
-  void send_again();
+  void give_up();
   [[nodiscard]] vehicle::Result act(bridge::vehicle::Command command);
   [[nodiscard]] bridge::vehicle::VehicleState snapshot() const;
 

@@ -60,7 +60,8 @@ Autopilot::Autopilot(const AutopilotOptions& options)
       wind_(options.wind, options.seed),
       estimator_(options.estimate, options.seed, model_.motion(), options.airborne),
       home_(start_position(options).x(), start_position(options).y(), options.ground_height),
-      hold_position_(start_position(options)) {
+      hold_position_(start_position(options)),
+      remote_control_(options.remote_control) {
   if (!options.airborne) return;
   armed_ = has_flown_ = true;
   landed_ = false;
@@ -74,7 +75,7 @@ Autopilot::Autopilot(const AutopilotOptions& options)
 
 Result Autopilot::arm(bool force) {
   if (armed_) return Result::kAccepted;
-  const bool able = !crashed_ && landed_ && ready() && !refuses_arming_;
+  const bool able = !crashed_ && landed_ && model_.on_ground() && ready() && !refuses_arming_;
   if (!able || (!force && !prearm_ok())) {
     report(Severity::kCritical, "Arming denied: Resolve system health failures first");
     emit_event(EventKind::kArmingRefused);

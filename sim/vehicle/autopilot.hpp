@@ -77,9 +77,10 @@ struct AutopilotOptions {
   int system_id = 1;
   Px4Version version = Px4Version::k1_17;
   Cascade cascade{};
-  Wind wind{};                ///< none: exactly as without a wind
-  EstimateErrors estimate{};  ///< none: what it believes is the truth, bit by bit
-  std::uint64_t seed = 1;     ///< of gusts and errors
+  Wind wind{};                  ///< none: exactly as without a wind
+  EstimateErrors estimate{};    ///< none: what it believes is the truth, bit by bit
+  std::uint64_t seed = 1;       ///< of gusts and errors
+  bool remote_control = false;  ///< a pilot's, sticks centred, from the start; else from pilot_mode() on
 };
 
 /// Not thread-safe: one thread steps and commands it. Commands act at once, setpoints with the next step.
@@ -139,6 +140,8 @@ class Autopilot {
   void jump_estimate(const Vec3& by);
   /// 0 to 1, clamped; NaN: not known. Full at the start, and nothing but this drains it.
   void set_battery(double remaining);
+  /// The wind's mean from now on; gusts stay. Throws std::invalid_argument where it is not finite.
+  void set_wind(const Vec3& mean) { wind_.set_mean(mean); }
   /// The motors stop, in the air it falls. It boots anew with its parameters, and where it is its local frame begins.
   void reboot();
   /// A pilot with a remote control, sticks centred from now on, switches the mode: manual ones are possible then.
@@ -169,7 +172,7 @@ class Autopilot {
   [[nodiscard]] FlightMode mode() const { return failsafe_ ? *failsafe_ : intended_mode_; }
   /// The mode last asked for.
   [[nodiscard]] FlightMode intended_mode() const { return intended_mode_; }
-  /// Whether a pilot has used one.
+  /// Whether there is one, healthy.
   [[nodiscard]] bool remote_control() const { return remote_control_; }
   [[nodiscard]] bool armed() const { return armed_; }
   [[nodiscard]] bool landed() const { return landed_; }

@@ -17,7 +17,9 @@ constexpr double kTakeoffDetection = 0.9;  ///< s from the ramp's start: IN_AIR 
 constexpr double kTakeoffDetectionHeight = 0.05;
 constexpr double kTakeoffReached = 0.1;  ///< m below the take-off height, from where HOLD takes over
 
-constexpr double kLandDetection = 3.0;       ///< s on the ground and told to go on down
+constexpr double kLandDetection = 3.0;  ///< s on the ground and told to go on down
+/// s, disarmed: then it is taken for landed wherever it is (MulticopterLandDetector, LNDMC_TRIG_TIME).
+constexpr double kDisarmedDetection = 1.0 / 3.0;
 constexpr double kLandingVelocity = 0.3;     ///< m/s down: less asked for in OFFBOARD is no wish to land
 constexpr double kFailsafeDescent = 0.7;     ///< m/s, the sink without manual control
 constexpr double kBrakingTime = 0.8;         ///< s: HOLD stops where it would be after that at its present speed
@@ -108,7 +110,7 @@ void Autopilot::update_takeoff() {
     ramp_started_ = now;
     hold_position_ = estimated_motion().position;
     model_.set_motors(Motors::kFlying);
-  } else if (phase_ == Phase::kRamp && landed_ && !takeoff_wanted()) {
+  } else if (phase_ != Phase::kLanded && landed_ && !takeoff_wanted()) {
     phase_ = Phase::kLanded;
     model_.set_motors(Motors::kIdle);
   } else if (phase_ == Phase::kRamp && now - ramp_started_ >= kRampTime) {
@@ -243,12 +245,12 @@ void Autopilot::update_landed() {
     }
     return;
   }
-  if (!model_.on_ground() || (armed_ && !descent_wanted())) {
+  if (armed_ && !(model_.on_ground() && descent_wanted())) {
     settled_since_.reset();
     return;
   }
   if (!settled_since_) settled_since_ = now;
-  if (now - *settled_since_ >= kLandDetection) touch_down();
+  if (now - *settled_since_ >= (armed_ ? kLandDetection : kDisarmedDetection)) touch_down();
 }
 
 void Autopilot::touch_down() {
@@ -256,13 +258,14 @@ void Autopilot::touch_down() {
   landed_at_ = time();
   settled_since_.reset();
   phase_ = Phase::kLanded;
-  if (armed_) model_.set_motors(Motors::kIdle);
+  if (!armed_) return;  // it says so of its flights alone
+  model_.set_motors(Motors::kIdle);
   report(Severity::kInfo, "Landing detected");
   emit_event(EventKind::kLandingDetected);
 }
 
 void Autopilot::update_auto_disarm() {
-  if (!landed_ || phase_ != Phase::kLanded) return;
+  if (!landed_) return;
   const double delay = parameters_.real(has_flown_ ? "COM_DISARM_LAND" : "COM_DISARM_PRFLT");
   const double since = has_flown_ ? landed_at_ : armed_at_;
   if (delay <= 0.0 || time() - since < delay) return;

@@ -23,4 +23,8 @@ WindModel::WindModel(const Wind& wind, std::uint64_t seed)
     : mean_(checked(wind).mean),
       gusts_(wind.gust, wind.gust_time, VehicleModel::kStep, planner::base::RandomStream(seed, kGustStream)) {}
 
+void WindModel::set_mean(const Vec3& mean) {
+  mean_ = checked({.mean = mean}).mean;
+}
+
 }  // namespace jink::sim::vehicle

@@ -19,6 +19,8 @@ class WindModel {
   /// Throws std::invalid_argument for figures that are not finite or negative.
   WindModel(const Wind& wind, std::uint64_t seed);
 
+  /// Throws as the constructor does.
+  void set_mean(const Vec3& mean);
   /// Advances by VehicleModel::kStep.
   void step() { gusts_.step(); }
   [[nodiscard]] Vec3 velocity() const { return mean_ + gusts_.value(); }

@@ -224,6 +224,17 @@ TEST(Companion, AfterAShortStallItGoesOnAfterALongOneItHolds) {
   }
 }
 
+TEST(Companion, AnAutopilotThatBeginsAnewWhileItEngagesEndsTheFlight) {
+  Loop loop;
+  loop.obeys = false;
+  loop.run(0.5);
+  ASSERT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kEngaging);
+  ++loop.link.telemetry.reboots;
+  loop.run(1.0);
+  EXPECT_TRUE(loop.companion.supervisor().reason().starts_with("the autopilot began anew"))
+      << loop.companion.supervisor().reason();
+}
+
 TEST(Companion, TheSummaryHoldsEachHazardAndHowLongItLasted) {
   Loop loop;
   loop.airborne().fly();

@@ -24,6 +24,11 @@ struct Flight {
     m.time_limit = 100.0;
     return m;
   }
+  static config::Mission landing_mission() {
+    config::Mission m = mission();
+    m.arrival = config::Arrival::kLand;
+    return m;
+  }
 
   explicit Flight(const config::Mission& m = mission(), const supervisor::SupervisorSettings& s = {})
       : supervisor(m, s) {

@@ -93,6 +93,17 @@ TEST(Hazards, EveryEndingOfAMissionIsOneOfAHazard) {
   }
 }
 
+TEST(Hazards, OnlyWhatDoesNotWaitDecidesHowAStoppedFlightEnds) {
+  for (std::size_t i = 0; i < cases().size(); ++i) {
+    Calm calm;
+    EXPECT_EQ(find_deciding(calm.situation()), nullptr);
+    cases()[i].begins(calm);
+    const bool decides =
+        hazards()[i].what == "the battery is critical" || hazards()[i].what == "a crewed aircraft comes too near";
+    EXPECT_EQ(find_deciding(calm.situation()), decides ? &hazards()[i] : nullptr);
+  }
+}
+
 TEST(Hazards, TracksAreNoneWhereTheMissionDoesNotRequireThem) {
   Calm calm;
   calm.tracks.required = false;

@@ -159,6 +159,20 @@ TEST(CommandRequest, OnAnOldHeartbeatNothingIsAsked) {
   EXPECT_TRUE(request.asked());
 }
 
+// Its effect was not there yet by the last heartbeat, and no other came to ask again on.
+TEST(CommandRequest, IsExhaustedWhereTheHeartbeatsEndAfterIt) {
+  CommandRequest request;
+  vehicle::VehicleState state;
+  state.heartbeat_stamp = 10.0;
+  ASSERT_TRUE(request.ask(vehicle::Command::kHold, 10.1, state));
+  state.heartbeat_stamp = 11.0;
+  for (double now = 11.1; now < 18.4; now += 0.1) {
+    EXPECT_FALSE(now > 12.6 && request.ask(vehicle::Command::kHold, now, state)) << now;
+    EXPECT_FALSE(request.exhausted(now, state)) << now;
+  }
+  EXPECT_TRUE(request.exhausted(18.6, state));
+}
+
 TEST(CommandRequest, KeepsTheRefusalOfThisCommand) {
   CommandRequest request;
   vehicle::VehicleState state;

@@ -73,7 +73,7 @@ const std::vector<Hazard>& hazards() {
        "heartbeat is missing", true},
       {"tracks", [](Flight& f) { f.tracks = false; }, [](Flight& f) { f.tracks = true; }, 1.0, "tracks are stale",
        true},
-      {"plan", [](Flight& f) { f.plans = false; }, [](Flight& f) { f.plans = true; }, 0.3, "planner is late", false},
+      {"plan", [](Flight& f) { f.plans = false; }, [](Flight& f) { f.plans = true; }, 0.3, "planner is late", true},
       {"GPS", [](Flight& f) { f.state.gps_lost = true; }, [](Flight& f) { f.state.gps_lost = false; }, 0.0,
        "lost its GPS", true},
       {"estimator", [](Flight& f) { f.state.local_position_ok = false; },

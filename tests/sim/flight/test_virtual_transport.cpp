@@ -138,23 +138,25 @@ TEST_F(VirtualLinkTest, ACommandIsAnsweredAtOnceOnAGoodLink) {
   EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kLand);
 }
 
-TEST_F(VirtualLinkTest, ALostCommandIsSentAgain) {
+// Whoever asks decides whether to ask again: what is lost may be wrong by then.
+TEST_F(VirtualLinkTest, ALostCommandIsNotSentAgain) {
   link.impair({.up = {.loss = 1.0}});
   link.request(bridge::vehicle::Command::kLand);
   run(0.3);
-  EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kHold);
   EXPECT_TRUE(reports().empty());
   link.impair({});
-  run(0.3);
-  EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kLand);
-  ASSERT_EQ(reports().size(), 1U);
+  run(1.0);
+  EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kHold);
+  const auto answers = reports();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_FALSE(answers[0].accepted);
 }
 
 TEST_F(VirtualLinkTest, ACommandThatIsNeverAnsweredIsReportedAsThat) {
   link.impair({.down = {.loss = 1.0}});
   link.request(bridge::vehicle::Command::kLand);
   EXPECT_EQ(autopilot.mode(), vehicle::FlightMode::kLand);  // it came through; the answer did not
-  run(1.9);
+  run(0.9);
   EXPECT_TRUE(reports().empty());
   run(0.3);
   const auto answers = reports();
@@ -169,8 +171,33 @@ TEST_F(VirtualLinkTest, ARebootIsSilenceThenADisarmedVehicle) {
   run(1.0, true);
   EXPECT_NEAR(link.state().heartbeat_stamp, 0.08, 1e-9);
   EXPECT_TRUE(link.state().armed);  // the last that was heard
+  EXPECT_EQ(link.state().reboots, 0U);
   run(0.5, true);
   EXPECT_FALSE(link.state().armed);
+  EXPECT_EQ(link.state().reboots, 1U);
+}
+
+// As over MAVLink: PX4 sends none then.
+TEST_F(VirtualLinkTest, AnAutopilotThatDoesNotKnowWhereItIsTellsNoPosition) {
+  autopilot.set_gps(false);
+  run(4.0, true);
+  EXPECT_NEAR(link.state().motion.received, 3.98, 1e-9);
+  run(4.0, true);
+  EXPECT_FALSE(link.state().local_position_ok);
+  EXPECT_NEAR(link.state().motion.received, 5.0, 0.03);
+  EXPECT_GT(link.state().heartbeat_stamp, 7.9);
+}
+
+TEST_F(VirtualLinkTest, SaysWhatKeepsItFromBeingArmed) {
+  run(0.1);
+  EXPECT_EQ(link.state().health, "");
+  vehicle::AutopilotOptions options;
+  options.ready_delay = 1.0;
+  vehicle::Autopilot starting(options);
+  VirtualLink its(starting, 1);
+  its.send_telemetry();
+  EXPECT_FALSE(its.state().armable);
+  EXPECT_EQ(its.state().health, "pre-arm check");
 }
 
 class VirtualTracksTest : public testing::Test {

@@ -75,12 +75,32 @@ TEST(Autopilot, DisarmingInTheAirNeedsForceAndThenItFalls) {
   EXPECT_TRUE(flight.autopilot.armed());
   EXPECT_EQ(flight.autopilot.disarm(true), Result::kAccepted);
   EXPECT_FALSE(flight.autopilot.armed());
+  EXPECT_EQ(flight.autopilot.landed_state(), kInAir);
   flight.run(0.5);
   EXPECT_LT(flight.autopilot.true_motion().velocity.z(), -3.0);
+  EXPECT_EQ(flight.autopilot.landed_state(), kGround);  // PX4 takes what is disarmed for landed
   EXPECT_EQ(flight.autopilot.arm(true), Result::kTemporarilyRejected);
   flight.run(8.0);
   EXPECT_EQ(flight.autopilot.true_motion().position, Vec3(1, 2, 0));
   EXPECT_EQ(flight.autopilot.landed_state(), kGround);
+  EXPECT_FALSE(flight.said("Landing detected"));  // which it says of what is armed alone
+}
+
+// Its thrust has come up where a take-off is not asked for any more, before anything has risen.
+TEST(Autopilot, ATakeOffThatIsBrokenOffOnTheGroundEndsDisarmed) {
+  Flight flight(instant_options());
+  const Setpoint up = position_setpoint({0, 0, 3});
+  flight.run(0.5, &up);
+  ASSERT_EQ(flight.autopilot.set_mode(6), Result::kAccepted);
+  ASSERT_EQ(flight.autopilot.arm(), Result::kAccepted);
+  flight.run(1.3, &up);
+  ASSERT_EQ(flight.autopilot.model().motors(), Motors::kFlying);
+  ASSERT_TRUE(flight.autopilot.landed());
+  const Setpoint barely = position_setpoint({0, 0, 0.004});
+  flight.run(4.0, &barely);
+  ASSERT_EQ(flight.autopilot.land(), Result::kAccepted);
+  flight.run(10.0);
+  EXPECT_FALSE(flight.autopilot.armed());
 }
 
 TEST(Autopilot, OffboardTakeoffRisesAsSlowlyAsPx4s) {

@@ -257,6 +257,20 @@ TEST(Pilot, FliesByHandTheStreamDoesNotTakeItBackAndWithHimALostOneHolds) {
   EXPECT_NEAR(flight.autopilot.true_motion().position.z(), 10.0, 0.1);
 }
 
+TEST(Pilot, WhoseRemoteControlIsThereFromTheStartHasTheSticksInAFailsafe) {
+  AutopilotOptions options = airborne_options({0, 0, 10});
+  options.remote_control = true;
+  Flight flight(options);
+  const Setpoint here = position_setpoint({0, 0, 10});
+  flight.run(0.5, &here);
+  EXPECT_TRUE(flight.autopilot.remote_control());
+  ASSERT_EQ(flight.autopilot.set_mode(6), Result::kAccepted);
+  flight.run(1.0, &here);
+  flight.run(5.0);
+  expect_heartbeat(flight.autopilot, 0xd1, 0x00030000, 5);
+  EXPECT_NEAR(flight.autopilot.true_motion().position.z(), 10.0, 0.1);
+}
+
 TEST(Pilot, OffboardNeedsAStreamForHimToo) {
   Flight flight(airborne_options());
   EXPECT_EQ(flight.autopilot.pilot_mode(FlightMode::kOffboard), Result::kTemporarilyRejected);

@@ -64,6 +64,14 @@ TEST(Wind, IsItsMeanAndItsGusts) {
   EXPECT_NEAR(east.deviation(), 1.5, 0.1);
 }
 
+TEST(Wind, MayChange) {
+  WindModel wind({.mean = {3, -1, 0}}, 1);
+  wind.set_mean({0, 5, 0});
+  wind.step();
+  EXPECT_EQ(wind.velocity(), Vec3(0, 5, 0));
+  EXPECT_THROW(wind.set_mean({0, kNan, 0}), std::invalid_argument);
+}
+
 TEST(Wind, RejectsWhatIsNoWind) {
   EXPECT_THROW(WindModel({.mean = {kNan, 0, 0}}, 1), std::invalid_argument);
   EXPECT_THROW(WindModel({.gust = -1.0}, 1), std::invalid_argument);
