@@ -217,8 +217,7 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
   if (decision.motion == Motion::kBrake) stop(now);
   goal_ = goal_kind(decision.motion);
   // On the ground the planner is to show that it plans; what is not flown to is not flown.
-  const bool proves = !state.in_air;
-  const std::optional<Goal::Kind> planned = proves ? std::optional(Goal::Kind::kClimb) : goal_;
+  const std::optional<Goal::Kind> planned = goal_ || state.in_air ? goal_ : Goal::Kind::kClimb;
   if (planned && planning_.due(now, *planned)) {
     planning_.start(now, intake_, motion_, goal(now, *planned));
     stop_without_planner(now);
