@@ -133,6 +133,14 @@ void Planning::look_around(double now, Intake& intake, PlanJob& job) const {
 }
 
 // What is asked of any path of the vehicle; the request says where it begins and leads to.
+// Of what the largest tilt gives, the drag takes what no plan can speed up or brake with any more.
+double Planning::attainable_speed(double drag) const {
+  const planner::base::VehicleLimits& vehicle = mission_.vehicle;
+  const double most = settings_.horizon.acceleration_limit;
+  const double left = most - settings_.horizon.planned_acceleration(vehicle.max_acceleration);
+  return drag > 0.0 ? std::min(vehicle.max_speed, std::max(vehicle.cruise_speed, left / drag)) : vehicle.max_speed;
+}
+
 void Planning::demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const {
   const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
   request.vehicle = mission_.vehicle;
@@ -175,6 +183,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   demand(state, request.stuck ? settings_.horizon.margin : motion.margin(), request);
   double& largest_margin = reporter_.summary().largest_margin;
   largest_margin = std::max(largest_margin, request.margin);
+  request.vehicle.max_speed = attainable_speed(stream.drag());
   request.vehicle.max_acceleration *= share;
   request.vehicle.cruise_speed *= share;
   // Where something near moves in a way not understood yet, it is watched before it is passed.

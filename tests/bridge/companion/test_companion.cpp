@@ -412,6 +412,24 @@ TEST(Companion, AVehicleThatLosesItsReferenceIsAskedForLess) {
   EXPECT_EQ(asked().max_acceleration, all.max_acceleration);
 }
 
+// PX4's simulator (drag 1/s) was asked for 10 m/s, could not follow, and gave up: the drag leaves no tilt for that.
+TEST(Companion, NoSpeedIsAskedForThatTheDragDoesNotLeave) {
+  const auto asked = [](double drag, double max_speed) {
+    config::Mission m = Loop::mission();
+    m.vehicle.drag = drag;
+    m.vehicle.max_speed = max_speed;
+    m.vehicle.cruise_speed = 5.0;
+    m.vehicle.max_acceleration = 5.0;
+    Loop loop(m);
+    loop.airborne().fly();
+    return loop.planner.jobs.front().request.vehicle.max_speed;  // before it has learned anything
+  };
+  EXPECT_NEAR(asked(1.0, 12.0), 7.5, 1e-9);  // 10 m/s² of a tilt of 45 degrees, less the 2.5 of plans
+  EXPECT_EQ(asked(1.0, 6.0), 6.0);
+  EXPECT_EQ(asked(0.0, 12.0), 12.0);
+  EXPECT_EQ(asked(2.0, 12.0), 5.0);  // what the mission wants is asked for
+}
+
 // The loop is woken by a track and by the plan that it leads to, between two turns.
 TEST(Companion, ANewTrackStartsAPlanAtOnceWhichGoesOnTheWireAtOnce) {
   Loop loop;
