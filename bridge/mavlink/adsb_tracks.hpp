@@ -37,9 +37,9 @@ struct AdsbReport {
 
 /// What ADSB_EMITTER_TYPE says of an aircraft.
 struct EmitterModel {
-  double radius;       ///< m, half the greatest extent of the largest common one of the class
-  double speed;        ///< m/s, what it may do where nothing is known of its speed
-  bool crewed = true;  ///< in the air with people on board: all but 14 and 17 to 19
+  double radius = 0.0;  ///< m, half the greatest extent of the largest common one of the class
+  double speed = 0.0;   ///< m/s, what it may do where nothing is known of its speed
+  bool crewed = true;   ///< in the air with people on board: all but 14 and 17 to 19
 };
 /// | type | class | radius m | speed m/s |
 /// |---|---|---|---|
