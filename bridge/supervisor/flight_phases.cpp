@@ -2,6 +2,20 @@
 #include "bridge/supervisor/flight_phases.hpp"
 
 namespace jink::bridge::supervisor {
+namespace {
+
+/// `Found` as const as the phase.
+template <typename Found, typename Phases>
+Found* ending_in(Phases& phase) {
+  return std::visit(
+      [](auto& p) -> Found* {
+        if constexpr (requires { p.ending; }) return &p.ending;
+        return nullptr;
+      },
+      phase);
+}
+
+}  // namespace
 
 std::string_view to_string(Phase phase) {
   switch (phase) {
@@ -50,21 +64,11 @@ Phase phase_of(const FlightPhase& phase) {
 }
 
 const Ending* ending_of(const FlightPhase& phase) {
-  return std::visit(
-      [](const auto& p) -> const Ending* {
-        if constexpr (requires { p.ending; }) return &p.ending;
-        return nullptr;
-      },
-      phase);
+  return ending_in<const Ending>(phase);
 }
 
 Ending* ending_of(FlightPhase& phase) {
-  return std::visit(
-      [](auto& p) -> Ending* {
-        if constexpr (requires { p.ending; }) return &p.ending;
-        return nullptr;
-      },
-      phase);
+  return ending_in<Ending>(phase);
 }
 
 CommandRequest* request_of(FlightPhase& phase) {

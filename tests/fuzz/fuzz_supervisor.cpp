@@ -42,31 +42,6 @@ config::Mission mission_of(std::uint8_t choice) {
   return m;
 }
 
-/// The real one with a budget of next to nothing; and it may fall silent, or throw.
-class Planner final : public bridge::companion::PlannerTask {
- public:
-  void start(bridge::companion::PlanJob job) override { planner_.start(std::move(job)); }
-  [[nodiscard]] bool busy() const override { return planner_.busy(); }
-  [[nodiscard]] double latency() const override { return planner_.latency(); }
-  [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override {
-    if (throws) throw std::runtime_error("no memory");
-    if (silent) return std::nullopt;
-    return planner_.poll(now);
-  }
-  bool silent = false, throws = false;
-
- private:
-  static bridge::companion::PlannerTaskSettings settings() {
-    bridge::companion::PlannerTaskSettings s;
-    s.horizon.slaves = s.horizon.sharing = 1;
-    s.horizon.population = 8;
-    s.horizon.generations = 2;
-    s.threads = 1;
-    return s;
-  }
-  bridge::companion::VirtualPlanner planner_{settings(), 0.04};
-};
-
 /// Everything around the companion, and what has become of it.
 class World {
  public:
@@ -325,7 +300,7 @@ class World {
   config::Mission mission_;
   bridge::testing::FakeLink link_;
   bridge::testing::FakeTracks source_;
-  Planner planner_;
+  bridge::testing::SmallPlanner planner_{0.04};
   bridge::companion::Companion companion_;
   double now_ = 10.0;
   bool link_up_ = true, positions_ = true, tracks_ = true, obeys_ = true, failsafe_ = false, tells_intention_ = true;

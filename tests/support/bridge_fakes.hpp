@@ -121,6 +121,32 @@ class FakePlanner final : public companion::PlannerTask {
   bool busy_ = false;
 };
 
+/// The real one with a budget of next to nothing, in virtual time; and it may fall silent, or throw.
+class SmallPlanner final : public companion::PlannerTask {
+ public:
+  /// `latency`: s, that a plan takes.
+  explicit SmallPlanner(double latency) : planner_(settings(), latency) {}
+  void start(companion::PlanJob job) override { planner_.start(std::move(job)); }
+  [[nodiscard]] bool busy() const override { return planner_.busy(); }
+  [[nodiscard]] double latency() const override { return planner_.latency(); }
+  [[nodiscard]] std::optional<companion::PlanResult> poll(double now) override {
+    if (throws) throw std::runtime_error("no memory");
+    return silent ? std::nullopt : planner_.poll(now);
+  }
+  bool silent = false, throws = false;
+
+ private:
+  static companion::PlannerTaskSettings settings() {
+    companion::PlannerTaskSettings s;
+    s.horizon.slaves = s.horizon.sharing = 1;
+    s.horizon.population = 8;
+    s.horizon.generations = 2;
+    s.threads = 1;
+    return s;
+  }
+  companion::VirtualPlanner planner_;
+};
+
 struct Event {
   double t = 0.0;
   std::string name, detail;

@@ -18,7 +18,8 @@ constexpr double kPlansFrom = 12.0;  // s, about when plans are flown
 constexpr double kAtSpeed = 1.0;     // s later, when it flies at its cruise speed
 // s, from the climb's beginning, from which the time limit counts.
 constexpr double kClimb = 5.0, kToTarget = 11.5, kToLanding = 12.7;
-constexpr double kLeast = 0.01;  // s, of a time limit
+constexpr double kLeast = 0.01;      // s, of a time limit
+constexpr double kPlanTakes = 0.02;  // s
 
 config::Mission mission_of(const Happening& what, const Cell& cell) {
   config::Mission m;
@@ -67,18 +68,7 @@ vehicle::AutopilotOptions autopilot_of(const Cell& cell) {
   return options;
 }
 
-bridge::companion::PlannerTaskSettings planner_settings() {
-  bridge::companion::PlannerTaskSettings s;
-  s.horizon.slaves = s.horizon.sharing = 1;
-  s.horizon.population = 8;
-  s.horizon.generations = 2;
-  s.threads = 1;
-  return s;
-}
-
 }  // namespace
-
-Planner::Planner() : planner_(planner_settings(), 0.02) {}
 
 bool Writer::poll(bridge::tracking::TrackMessage& message) {
   while (tracks.poll(message)) {
@@ -125,7 +115,7 @@ Flight::~Flight() = default;
 
 void Flight::start_companion() {
   companion_.reset();
-  planner_ = std::make_unique<Planner>();
+  planner_ = std::make_unique<bridge::testing::SmallPlanner>(kPlanTakes);
   companion_ = std::make_unique<bridge::companion::Companion>(
       mission_, settings_,
       bridge::companion::CompanionParts{wire_, sources_, *planner_, {observer_.get()}, nullptr, nullptr});

@@ -5,10 +5,8 @@
 
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "bridge/companion/companion.hpp"
@@ -17,6 +15,7 @@
 #include "sim/flight/virtual_transport.hpp"
 #include "sim/world/world.hpp"
 #include "tests/sim/flight/safety_link.hpp"
+#include "tests/support/bridge_fakes.hpp"
 
 namespace jink::sim::flight::safety {
 
@@ -53,23 +52,6 @@ struct Cell {
   bool tells_modes = true;   ///< the autopilot, in CURRENT_MODE, as PX4 does since 1.15
 };
 
-/// The real one with a budget of next to nothing; and it may fall silent, or throw.
-class Planner final : public bridge::companion::PlannerTask {
- public:
-  Planner();
-  void start(bridge::companion::PlanJob job) override { planner_.start(std::move(job)); }
-  [[nodiscard]] bool busy() const override { return planner_.busy(); }
-  [[nodiscard]] double latency() const override { return planner_.latency(); }
-  [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override {
-    if (throws) throw std::runtime_error("no memory");
-    return silent ? std::nullopt : planner_.poll(now);
-  }
-  bool silent = false, throws = false;
-
- private:
-  bridge::companion::VirtualPlanner planner_;
-};
-
 /// A writer of tracks with an identity of its own.
 class Writer final : public bridge::tracking::TrackSource {
  public:
@@ -101,7 +83,7 @@ class Flight {
   // What befalls it.
   vehicle::Autopilot& autopilot() { return autopilot_; }
   Link& link() { return wire_; }
-  Planner& planner() { return *planner_; }
+  bridge::testing::SmallPlanner& planner() { return *planner_; }
   std::vector<std::unique_ptr<Writer>>& writers() { return writers_; }
   [[nodiscard]] double now() const { return autopilot_.time(); }
   void interrupt() { companion_->interrupt(now()); }
@@ -167,7 +149,7 @@ class Flight {
   std::vector<std::unique_ptr<Writer>> writers_;
   bridge::tracking::TrackSources sources_;
   std::unique_ptr<Observer> observer_;
-  std::unique_ptr<Planner> planner_;
+  std::unique_ptr<bridge::testing::SmallPlanner> planner_;
   std::unique_ptr<bridge::companion::Companion> companion_;
   long steps_ = 0;
   std::optional<double> flying_since_, phase_since_, began_;
