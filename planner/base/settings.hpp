@@ -10,7 +10,7 @@ namespace jink::planner::base {
 
 /// Which collision constraint the paper-mode problem uses.
 enum class Constraint {
-  kPaper,  ///< the discriminant of [Paper] Eq. (14): infinite line, obstacle frozen
+  kPaper,  ///< the discriminant of [Paper] Eq. (14): infinite line, obstacle frozen; the nearby ones of Eq. (17)
   kSwept   ///< both move during the segment
 };
 

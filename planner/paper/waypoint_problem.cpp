@@ -31,10 +31,9 @@ struct WaypointProblem::Lanes {
   Lane dx, dy, dz, length, duration;
 };
 
-// The bounds of the segments to any waypoint of the search box, and how long the longest takes.
-base::Box WaypointProblem::reach(double& longest) const {
+// Of the segments to any waypoint of the search box.
+WaypointProblem::Reach WaypointProblem::reach() const {
   base::Box hull{step_.from, step_.from};
-  longest = 0.0;
   for (const double u : {step_.lower[0], step_.upper[0]}) {
     for (const double v : {step_.lower[1], step_.upper[1]}) {
       const Vec3 corner = waypoint(u, v);
@@ -43,36 +42,34 @@ base::Box WaypointProblem::reach(double& longest) const {
     }
   }
   const Vec3 farthest = (hull.max - step_.from).cwiseMax(step_.from - hull.min);
-  longest = flight_time(farthest.norm(), farthest.z(), vehicle_);
-  return hull;
+  return {hull, flight_time(farthest.norm(), farthest.z(), vehicle_)};
 }
 
 void WaypointProblem::prepare(const Step& step, std::span<const base::Track> tracks) {
   step_ = step;
   spheres_.clear();
   virtual_spheres_.clear();
-  double longest = 0.0;
-  const base::Box hull = reach(longest);
+  const Reach within = reach();
   for (const base::Track& track : tracks) {
-    const double radius = track.radius + vehicle_.radius + settings_.margin;
-    const double grown = radius + track.acceleration.norm() * longest * longest / 8.0;
-    const Vec3 moved = longest * track.velocity;
-    const Vec3 turned = 0.5 * longest * longest * track.acceleration;
-    const Vec3 low = track.position + moved.cwiseMin(0.0) + turned.cwiseMin(0.0);
-    const Vec3 high = track.position + moved.cwiseMax(0.0) + turned.cwiseMax(0.0);
-    const bool near = ((low - hull.max).array() <= grown).all() && ((hull.min - high).array() <= grown).all();
-    // The paper's constraint sees the infinite line, so there every obstacle counts.
-    if (near || settings_.constraint == base::Constraint::kPaper) add_sphere(track, radius);
+    add_if_near(track, track.radius + vehicle_.radius + settings_.margin, within);
   }
-  find_narrow_passes(tracks);
+  find_narrow_passes(tracks, within);
 }
 
-void WaypointProblem::add_sphere(const base::Track& track, double radius) {
+void WaypointProblem::add_if_near(const base::Track& track, double radius, const Reach& reach) {
+  const double longest = reach.longest;
+  const double grown = radius + track.acceleration.norm() * longest * longest / 8.0;
+  const Vec3 moved = longest * track.velocity;
+  const Vec3 turned = 0.5 * longest * longest * track.acceleration;
+  const Vec3 low = track.position + moved.cwiseMin(0.0) + turned.cwiseMin(0.0);
+  const Vec3 high = track.position + moved.cwiseMax(0.0) + turned.cwiseMax(0.0);
+  const bool near = ((low - reach.hull.max).array() <= grown).all() && ((reach.hull.min - high).array() <= grown).all();
+  if (!near) return;
   spheres_.push_back(
       {step_.from - track.position, track.velocity, 0.5 * track.acceleration, radius, track.acceleration.norm() / 8.0});
 }
 
-void WaypointProblem::find_narrow_passes(std::span<const base::Track> tracks) {
+void WaypointProblem::find_narrow_passes(std::span<const base::Track> tracks, const Reach& reach) {
   for (std::size_t a = 0; a < tracks.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks.size(); ++b) {
       if (std::abs(tracks[a].position.z() - tracks[b].position.z()) > settings_.narrow_altitude) continue;
@@ -84,7 +81,7 @@ void WaypointProblem::find_narrow_passes(std::span<const base::Track> tracks) {
       sphere.acceleration = 0.5 * (tracks[a].acceleration + tracks[b].acceleration);
       sphere.radius = 0.5 * vehicle_.length;  // r_v of Eq. (15)
       virtual_spheres_.push_back(sphere);
-      add_sphere(sphere, sphere.radius);
+      add_if_near(sphere, sphere.radius, reach);
     }
   }
 }

@@ -23,7 +23,10 @@ double segment_duration(const Vec3& from, const Vec3& to, const base::VehicleLim
 /// φ_max, rad, the angle between the segment before and this one. Constraints: the segment misses every obstacle, Eq.
 /// (14) or the swept test, and the virtual sphere of every narrow pass, Eq. (15). differs: g and h are penalised each
 /// for itself, since the sum in Eq. (17) lets one that holds pay for one that does not; radii are grown by the
-/// vehicle's.
+/// vehicle's and by PaperSettings::margin.
+///
+/// The p nearby obstacles of Eq. (17), "in the i th waypoint's neighborhood", of which the paper says no more, are
+/// those that the step could touch while it takes place, whatever the variables are; and so with the virtual spheres.
 class WaypointProblem final : public optimizer::Problem {
  public:
   /// One step's places and bounds. ENU, m.
@@ -59,7 +62,7 @@ class WaypointProblem final : public optimizer::Problem {
   }
   /// Sum of squared constraint values max(0, g)² + max(0, h)² of the segment to `to`; 0: feasible.
   [[nodiscard]] double violation(const Vec3& to) const;
-  /// Virtual spheres of narrow passes now active; for tests and figures.
+  /// Virtual spheres of narrow passes now active, near or not; for tests and figures.
   [[nodiscard]] std::span<const base::Track> virtual_spheres() const { return virtual_spheres_; }
 
  private:
@@ -71,12 +74,17 @@ class WaypointProblem final : public optimizer::Problem {
     double radius = 0.0;
     double bulge = 0.0;  ///< per duration²: how far its path leaves its chord at most
   };
+  /// Where the step can lead.
+  struct Reach {
+    base::Box hull;        ///< of the segments to all waypoints
+    double longest = 0.0;  ///< that one of them takes, s
+  };
   struct Lanes;
   struct Kernel;
 
-  void add_sphere(const base::Track& track, double radius);
-  void find_narrow_passes(std::span<const base::Track> tracks);
-  [[nodiscard]] base::Box reach(double& longest) const;
+  void add_if_near(const base::Track& track, double radius, const Reach& reach);
+  void find_narrow_passes(std::span<const base::Track> tracks, const Reach& reach);
+  [[nodiscard]] Reach reach() const;
 
   base::PaperSettings settings_;
   base::VehicleLimits vehicle_;

@@ -122,16 +122,34 @@ TEST(WaypointProblem, SweptConstraintCoversTheCurveOfAnAcceleratingObstacle) {
   EXPECT_GT(hits, 50);
 }
 
-// To (3,0,0), sphere at (−4, 1, 0), r = 0.75 + 0.5: A = 9, B = 2·3·4 = 24, C = 17 − 1.5625; 576 − 36·15.4375 = 20.25:
-// the infinite line hits it behind the start. Swept: far away.
+// To (3,0,0), sphere at (−1, 1, 0), r = 0.75 + 0.5: A = 9, B = 2·3·1 = 6, C = 2 − 1.5625; 36 − 36·0.4375 = 20.25: the
+// infinite line hits it behind the start. Swept: 1.414 away.
 TEST(WaypointProblem, PaperConstraintIsTheDiscriminantOfTheLine) {
-  const std::vector<base::Track> tracks{sphere({-4, 1, 0}, 0.75)};
+  const std::vector<base::Track> tracks{sphere({-1, 1, 0}, 0.75)};
   WaypointProblem paper(settings(base::Constraint::kPaper), vehicle());
   paper.prepare(step(), tracks);
   EXPECT_NEAR(paper.violation({3, 0, 0}), 20.25 * 20.25, 1e-9);
   WaypointProblem swept(settings(base::Constraint::kSwept), vehicle());
   swept.prepare(step(), tracks);
   EXPECT_EQ(swept.violation({3, 0, 0}), 0.0);
+}
+
+// The infinite line hits spheres behind the start, but in Eq. (17) only the p in the waypoint's neighbourhood count:
+// one that ends 0.01 behind the start does not, nor does the pass of a pair there.
+TEST(WaypointProblem, PaperConstraintCountsNearbyObstaclesOnly) {
+  base::VehicleLimits thin = vehicle();
+  thin.radius = 0.0;
+  const auto violation = [&](const std::vector<base::Track>& tracks, std::size_t passes) {
+    WaypointProblem problem(settings(base::Constraint::kPaper), thin);
+    problem.prepare(step(), tracks);
+    EXPECT_EQ(problem.virtual_spheres().size(), passes);
+    return problem.violation({3, 0, 0});
+  };
+  EXPECT_EQ(violation({sphere({-1, 0, 0}, 0.99)}, 0), 0.0);
+  EXPECT_GT(violation({sphere({-1, 0, 0}, 1.01)}, 0), 0.0);
+  EXPECT_GT(violation({sphere({-1, 0, 0}, 0.99, {1, 0, 0})}, 0), 0.0);  // comes near while the step takes place
+  EXPECT_EQ(violation({sphere({-0.41, 0.35, 0}, 0.1), sphere({-0.41, -0.35, 0}, 0.1)}, 1), 0.0);  // r_v = 0.4
+  EXPECT_GT(violation({sphere({-0.39, 0.35, 0}, 0.1), sphere({-0.39, -0.35, 0}, 0.1)}, 1), 0.0);
 }
 
 TEST(WaypointProblem, MarginGrowsTheRadii) {
