@@ -121,7 +121,9 @@ std::span<const double> Momvo::representative() {
 void Momvo::replace_worst(std::size_t rank, std::span<const double> x) {
   assert(order_.size() == universes_);
   const std::size_t position = universes_ - 1 - std::min(rank, universes_ - 1);
-  place(static_cast<std::size_t>(order_[position]), x);
+  const auto worst = static_cast<std::size_t>(order_[position]);
+  place(worst, x);
+  kinds_[worst] = Move::kReceived;
 }
 
 }  // namespace jink::planner::optimizer

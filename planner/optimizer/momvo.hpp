@@ -38,11 +38,13 @@ class alignas(64) Momvo {
   std::span<const double> representative();
   /// Cost of the representative drawn last.
   [[nodiscard]] const Cost& representative_cost() const { return archive_.cost(representative_); }
-  /// Replaces the `rank`-th worst universe (0: the worst) of the last ranking.
+  /// Replaces the `rank`-th worst universe (0: the worst) of the last ranking. No kind of move is credited with it.
   void replace_worst(std::size_t rank, std::span<const double> x);
 
   /// The non-dominated solutions found since reset().
   [[nodiscard]] const Archive& archive() const { return archive_; }
+  /// Probability that the next move is narrow, with Operators::kAdaptive.
+  [[nodiscard]] double narrow_share() const { return moves_.narrow_share(); }
   /// How many universes this population has.
   [[nodiscard]] std::size_t universes() const { return universes_; }
 

@@ -61,17 +61,19 @@ inline double narrow_wormhole(double leader, double tdr, double lower, double up
   return leader + 2.0 * tdr * (upper - lower) * (r * r * r);
 }
 
-/// The kinds of move of Operators::kAdaptive.
+/// How a universe has come to be where it is: by a kind of move of Operators::kAdaptive, or by none.
 enum class Move : unsigned char {
-  kWide,   ///< the paper's: white holes and wormholes in every variable
-  kNarrow  ///< narrow wormholes in a few variables, the others as the leader has them
+  kWide,     ///< white holes and wormholes in every variable; what is drawn at the start counts as one
+  kNarrow,   ///< narrow wormholes in a few variables, the others as the leader has them
+  kReceived  ///< not moved: another population's solution
 };
 
 /// Draws kinds of move in proportion to how often their results enter the archive.
 class MoveChoice {
  public:
-  /// Counts one move of this kind: whether its result entered the archive.
+  /// Counts one move of this kind: whether its result entered the archive. What was received counts for none.
   void judge(Move move, bool success) {
+    if (move == Move::kReceived) return;
     tries_[index(move)] += 1.0;
     successes_[index(move)] += success ? 1.0 : 0.0;
   }

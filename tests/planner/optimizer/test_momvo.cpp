@@ -111,6 +111,20 @@ TEST(Momvo, ReplacementEntersTheNextIteration) {
   EXPECT_EQ(held, 2);
 }
 
+// One universe. The first iteration counts it as a wide move that succeeded: wide (1 + 1)/(1 + 2), narrow 1/2. The
+// second knows no move: 0.8 of the counts are left, wide (0.8 + 1)/(0.8 + 2), narrow 1/2.
+TEST(Momvo, CreditsNoMoveWithAReplacement) {
+  const Zdt problem(1, 5);
+  Momvo momvo(1, 5, 2, {});
+  momvo.reset(problem, base::RandomStream(1));
+  momvo.iterate(0.1);
+  EXPECT_DOUBLE_EQ(momvo.narrow_share(), 0.5 / (2.0 / 3.0 + 0.5));
+  momvo.replace_worst(0, std::vector<double>{0.49, 0, 0, 0, 0});  // on the true front
+  momvo.iterate(0.2);
+  ASSERT_EQ(momvo.archive().costs().back().f[0], 0.49);
+  EXPECT_DOUBLE_EQ(momvo.narrow_share(), 0.5 / (1.8 / 2.8 + 0.5));
+}
+
 TEST(Momvo, WorksWithOneUniverse) {
   const Zdt problem(1, 2);
   Momvo momvo(1, 2, 2, {});

@@ -75,6 +75,13 @@ TEST(MoveChoice, StartsEvenAndFollowsSuccess) {
   EXPECT_DOUBLE_EQ(choice.narrow_share(), 0.4 / 0.6);
 }
 
+TEST(MoveChoice, CreditsNoKindWithWhatWasReceived) {
+  MoveChoice choice;
+  for (int i = 0; i < 8; ++i) choice.judge(Move::kReceived, true);
+  choice.adapt();
+  EXPECT_EQ(choice.narrow_share(), 0.5);
+}
+
 TEST(MoveChoice, LeavesEachKindATenth) {
   MoveChoice choice;
   for (int generation = 0; generation < 50; ++generation) {
