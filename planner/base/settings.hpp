@@ -22,7 +22,7 @@ enum class Axis {
 
 /// How universes move, [Paper] Eq. (18) and (20).
 enum class Operators {
-  kPrinted,    ///< as the paper prints them
+  kPrinted,    ///< as the paper prints them, and Algorithms 1 and 2 to the letter
   kCommon,     ///< the step of the circulating MOMVO code, which depends on where the origin is; Eq. (20) mended
   kCorrected,  ///< mended, see planner/optimizer/multiverse.hpp
   kAdaptive    ///< corrected, and a second kind of move, narrow; the kind that succeeds is drawn more often

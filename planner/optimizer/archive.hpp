@@ -18,7 +18,7 @@ namespace jink::planner::optimizer {
 ///
 /// N_i of [Paper] Eq. (21) is the number of members in a member's cell of a grid of ten cells per objective over the
 /// members' extent, itself included. differs: alpha of Eq. (21) has no part in it, since a factor common to all weights
-/// of a roulette cancels out.
+/// of a roulette cancels out; and members that are best in an objective never go, so that the front keeps its ends.
 class Archive {
  public:
   /// `capacity` > objectives, so that the extremes fit.

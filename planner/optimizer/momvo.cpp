@@ -50,32 +50,37 @@ void Momvo::place(std::size_t slot, std::span<const double> x) {
   for (std::size_t j = 0; j < to.size(); ++j) to[j] = std::clamp(x[j], lower_[j], upper_[j]);
 }
 
-void Momvo::iterate(const Schedule& schedule) {
+void Momvo::rank() {
   assert(problem_ != nullptr);
   problem_->evaluate(x_, costs_);
+  for (Cost& cost : costs_) make_rankable(cost);
+  order_ = ranking_.order(costs_, objectives_);
+}
+
+void Momvo::iterate(const Schedule& schedule) {
+  rank();
   for (std::size_t i = 0; i < universes_; ++i) {
-    make_rankable(costs_[i]);
     const bool added = archive_.add(universe(i), costs_[i], random_);
     moves_.judge(kinds_[i], added);
   }
   archive_.settle(random_);
-  order_ = ranking_.order(costs_, objectives_);
   if (settings_.operators == base::Operators::kAdaptive) moves_.adapt();
   move(schedule);
 }
 
 void Momvo::move(const Schedule& schedule) {
   std::copy(x_.begin(), x_.end(), previous_.begin());
-  base::RandomStream random = random_;  // a local one stays in registers
+  // Normalised inflation rates: 0 for the best, which takes nothing from others, to 1 for the worst.
+  const double last = universes_ > 1 ? static_cast<double>(universes_ - 1) : 1.0;
+  const double worst = settings_.operators == base::Operators::kPrinted ? 0.0 : 1.0;  // Eq. (18) uses no rate
+  base::RandomStream random = random_;                                                // a local one stays in registers
   for (std::size_t position = 0; position < universes_; ++position) {
     const auto i = static_cast<std::size_t>(order_[position]);
     kinds_[i] = settings_.operators == base::Operators::kAdaptive ? moves_.draw(random) : Move::kWide;
     if (kinds_[i] == Move::kNarrow) {
       move_narrowly(i, schedule.tdr, random);
     } else {
-      // Normalised inflation rate: 0 for the best, 1 for the worst; the best takes nothing from others.
-      const double last = universes_ > 1 ? static_cast<double>(universes_ - 1) : 1.0;
-      move_widely(i, static_cast<double>(position) / last, schedule, random);
+      move_widely(i, worst * static_cast<double>(position) / last, schedule, random);
     }
   }
   random_ = random;
@@ -114,8 +119,14 @@ void Momvo::move_narrowly(std::size_t i, double tdr, base::RandomStream& random)
 }
 
 std::span<const double> Momvo::representative() {
-  representative_ = archive_.draw(random_);
-  return archive_.x(representative_);
+  if (archive_.size() == 0) {
+    const auto i = static_cast<std::size_t>(random_.below(universes_));
+    representative_cost_ = costs_[i];
+    return universe(i);
+  }
+  const std::size_t member = archive_.draw(random_);
+  representative_cost_ = archive_.cost(member);
+  return archive_.x(member);
 }
 
 void Momvo::replace_worst(std::size_t rank, std::span<const double> x) {

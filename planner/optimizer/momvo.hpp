@@ -15,6 +15,13 @@
 
 namespace jink::planner::optimizer {
 
+/// With Operators::kPrinted to the letter: Eq. (18) moves what a wormhole takes to the best universe, a leader that
+/// roulette draws from the archive for each universe, and keeps the rest, so that the inflation rates of Algorithm 1,
+/// steps 6 and 8, have no effect. differs, with the others: a component that no wormhole takes comes through a white
+/// hole with a probability that is the universe's inflation rate, as in Mirjalili's MVO; and that rate is the
+/// universe's place in the ranking, 0 for the best to 1 for the worst, not its normalised fitness, of which several
+/// objectives do not have one.
+///
 /// A pure function of (problem, settings, seeds, random stream). All memory is taken at construction; reset() and
 /// iterate() allocate nothing. Not thread-safe: one population, one thread at a time.
 class alignas(64) Momvo {
@@ -33,11 +40,13 @@ class alignas(64) Momvo {
   /// The same where `fraction` in (0, 1] of the budget is used when it ends.
   void iterate(double fraction) { iterate(schedule_at(fraction, settings_)); }
 
-  /// Draws the representative that this population sends to the master, by roulette from its own archive. Precondition:
-  /// at least one iteration.
+  /// Evaluates and ranks the universes, for what is exchanged before the first iteration.
+  void rank();
+  /// Draws the representative that this population sends to the master, by roulette from its own archive; before the
+  /// first iteration one of the universes, each as likely. Precondition: rank() or an iteration.
   std::span<const double> representative();
   /// Cost of the representative drawn last.
-  [[nodiscard]] const Cost& representative_cost() const { return archive_.cost(representative_); }
+  [[nodiscard]] const Cost& representative_cost() const { return representative_cost_; }
   /// Replaces the `rank`-th worst universe (0: the worst) of the last ranking. No kind of move is credited with it.
   void replace_worst(std::size_t rank, std::span<const double> x);
 
@@ -71,7 +80,7 @@ class alignas(64) Momvo {
   std::vector<Cost> costs_;
   std::vector<Move> kinds_;  // how each universe has come to be where it is
   MoveChoice moves_;
-  std::size_t representative_ = 0;
+  Cost representative_cost_;
 };
 
 }  // namespace jink::planner::optimizer

@@ -50,6 +50,15 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
   const auto cycle_end = [&](int cycle) {
     return static_cast<int>(static_cast<std::int64_t>(budget.generations) * (cycle + 1) / (settings_.sharing + 1));
   };
+  const auto start = [&](std::uint32_t j) { begin(j, problem, initial, base::RandomStream(seed, stream, j)); };
+  const bool shares_first = settings_.operators == base::Operators::kPrinted && settings_.sharing > 0;
+  if (shares_first) {  // Algorithm 2, steps 3 and 6
+    pool.run(slaves, [&](std::uint32_t j) {
+      start(j);
+      slaves_[j].rank();
+    });
+    share();
+  }
   int done = 0;
   int cycle = 0;
   while (done < std::min(budget.generations, budget.stop_after) && !report_.deadline_reached) {
@@ -57,7 +66,7 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
     const int stop = budget.has_deadline() ? done + 1 : std::min(cycle_end(cycle), budget.stop_after);
     extend_schedule(budget.generations, stop);
     pool.run(slaves, [&](std::uint32_t j) {
-      if (done == 0) begin(j, problem, initial, base::RandomStream(seed, stream, j));
+      if (done == 0 && !shares_first) start(j);
       for (int iteration = done; iteration < stop; ++iteration) {
         slaves_[j].iterate(schedule_[static_cast<std::size_t>(iteration)]);
       }
@@ -67,7 +76,7 @@ const Front& Pmomvo::run(const Problem& problem, std::span<const double> initial
     report_.deadline_reached = done < budget.generations && budget.expired();
   }
   report_.generations = done;
-  report_.evaluations = static_cast<std::int64_t>(done) * settings_.population;
+  report_.evaluations = static_cast<std::int64_t>(done + (shares_first ? 1 : 0)) * settings_.population;
   merge();
   return front_;
 }

@@ -15,6 +15,11 @@ namespace jink::planner::optimizer {
 /// The result depends on (problem, settings, seeds, seed, generations), not on the number of threads: slaves share
 /// nothing while they run, and the master works in the order of their numbers.
 ///
+/// With Operators::kPrinted and l > 0 representatives are also shared before the first cycle, as Algorithm 2 has it in
+/// steps 3 and 6: each slave's is then one of its universes, drawn evenly, and what ranks them is one evaluation more
+/// of all universes. differs, with the others: what is shared first comes from the first cycle, since random solutions
+/// are not worth an evaluation of all.
+///
 /// m = 1 with l = 0 is MOMVO alone. Universes are dealt out evenly, at least one for each slave.
 class Pmomvo final : public Optimizer {
  public:

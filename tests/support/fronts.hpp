@@ -22,6 +22,24 @@ inline Cost cost(double f1, double f2, double violation = 0.0) {
   return {{f1, f2, 0.0}, violation};
 }
 
+/// Another problem, and what it was asked for, batch by batch. Not for several threads.
+class Recorded final : public planner::optimizer::Problem {
+ public:
+  explicit Recorded(const planner::optimizer::Problem& problem) : problem_(problem) {}
+  [[nodiscard]] int dimension() const override { return problem_.dimension(); }
+  [[nodiscard]] int objectives() const override { return problem_.objectives(); }
+  [[nodiscard]] std::span<const double> lower() const override { return problem_.lower(); }
+  [[nodiscard]] std::span<const double> upper() const override { return problem_.upper(); }
+  void evaluate(std::span<const double> x, std::span<Cost> costs) const override {
+    batches.emplace_back(x.begin(), x.end());
+    problem_.evaluate(x, costs);
+  }
+  mutable std::vector<std::vector<double>> batches;
+
+ private:
+  const planner::optimizer::Problem& problem_;
+};
+
 /// ZDT1 to ZDT3: E. Zitzler, K. Deb and L. Thiele, Evolutionary Computation 8(2), 2000. Two objectives, variables in
 /// [0, 1]; the fronts are where all variables but the first are 0. Fails the test where it is asked outside its box.
 class Zdt final : public planner::optimizer::Problem {

@@ -17,6 +17,7 @@
 namespace jink::planner::optimizer {
 namespace {
 
+using testing_support::Recorded;
 using testing_support::volume_of;
 using testing_support::Zdt;
 
@@ -123,6 +124,70 @@ TEST(Momvo, CreditsNoMoveWithAReplacement) {
   momvo.iterate(0.2);
   ASSERT_EQ(momvo.archive().costs().back().f[0], 0.49);
   EXPECT_DOUBLE_EQ(momvo.narrow_share(), 0.5 / (1.8 / 2.8 + 0.5));
+}
+
+/// f1 = x1² + x2², f2 = (x1 − 4)² + x2², in [-2, 6] × [-4, 4].
+class TwoHills final : public Problem {
+ public:
+  [[nodiscard]] int dimension() const override { return 2; }
+  [[nodiscard]] int objectives() const override { return 2; }
+  [[nodiscard]] std::span<const double> lower() const override { return lower_; }
+  [[nodiscard]] std::span<const double> upper() const override { return upper_; }
+  void evaluate(std::span<const double> x, std::span<Cost> costs) const override {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const double a = x[2 * i];
+      const double b = x[2 * i + 1];
+      costs[i] = {{a * a + b * b, (a - 4.0) * (a - 4.0) + b * b, 0.0}, 0.0};
+    }
+  }
+
+ private:
+  std::array<double, 2> lower_{-2, -4};
+  std::array<double, 2> upper_{6, 4};
+};
+
+// [Paper] Algorithm 1, iteration 1 of 4, with the operators as printed. Eq. (19): WEP = 0.2 + 1·0.8/4 = 0.4. Eq. (20):
+// TDR = 1 − 1^(1/6)/4 = 0.75. Of the universes (5, 2), (0, 1), (-1, 2.5), (4, 1) with costs (29, 5), (1, 17),
+// (7.25, 31.25), (17, 1) the second and the fourth are not dominated: the archive, two occupied cells. They come first
+// in the order, 1, 3, 0, 2; so they are given random numbers.
+TEST(Momvo, OneIterationIsThePapers) {
+  const TwoHills hills;
+  const Recorded problem(hills);
+  base::OptimizerSettings s;
+  s.operators = base::Operators::kPrinted;
+  s.iterations = 4;
+  const std::vector<double> universes{5, 2, 0, 1, -1, 2.5, 4, 1};
+  constexpr std::uint64_t kSeed = 22;
+  Momvo momvo(4, 2, 2, s);
+  momvo.reset(problem, base::RandomStream(kSeed));
+  for (std::size_t i = 0; i < 4; ++i) momvo.place(i, std::span(universes).subspan(2 * i, 2));
+  momvo.iterate(0.25);
+  ASSERT_EQ(momvo.archive().size(), 2U);
+  EXPECT_EQ(momvo.archive().cost(0).f, (std::array{1.0, 17.0, 0.0}));
+  EXPECT_EQ(momvo.archive().cost(1).f, (std::array{17.0, 1.0, 0.0}));
+  momvo.iterate(0.5);  // which evaluates where the first has led
+
+  std::vector<double> expected = universes;
+  base::RandomStream random(kSeed);
+  for (int i = 0; i < 8; ++i) random.next();  // of the random population
+  for (const std::size_t i : {1U, 3U, 0U, 2U}) {
+    const std::size_t leader = random.uniform() < 0.5 ? 1 : 3;
+    for (std::size_t j = 0; j < 2; ++j) {
+      random.next();  // which universe a white hole would take from
+      const double signed_r = 2.0 * random.uniform() - 1.0;
+      const double rand1 = random.uniform_pair()[1];
+      if (rand1 >= 0.4) continue;  // W stays
+      const double lower = j == 0 ? -2.0 : -4.0;
+      const double upper = j == 0 ? 6.0 : 4.0;
+      const double step = upper - lower * std::abs(signed_r) + lower;
+      const double moved = universes[2 * leader + j] + 0.75 + (signed_r < 0.0 ? -step : step);  // Eq. (18)
+      expected[2 * i + j] = std::min(std::max(moved, lower), upper);
+    }
+  }
+  ASSERT_EQ(problem.batches.size(), 2U);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_DOUBLE_EQ(problem.batches[1][i], expected[i]) << i;
+  const std::vector<double> literal{5, 2, 0, 3.396798494, -1, 4, -0.7324951775, -0.9738714285};
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(problem.batches[1][i], literal[i], 1e-9) << i;
 }
 
 TEST(Momvo, WorksWithOneUniverse) {

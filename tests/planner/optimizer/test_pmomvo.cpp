@@ -15,6 +15,7 @@
 namespace jink::planner::optimizer {
 namespace {
 
+using testing_support::Recorded;
 using testing_support::volume_of;
 using testing_support::Zdt;
 
@@ -112,6 +113,67 @@ TEST(Pmomvo, OneSlaveWithoutSharingIsMomvoAlone) {
 // One slave that takes its own representative back is not the same as one that does not share.
 TEST(Pmomvo, SharingHasAnEffect) {
   EXPECT_NE(solve(settings(4, 0), 40, 1).x, solve(settings(4, 9), 40, 1).x);
+}
+
+// Algorithm 2, steps 1 to 6, for two slaves of three universes: a random representative of each, and each slave's worst
+// replaced by those of them that are not dominated, before the first iteration.
+TEST(Pmomvo, SharesBeforeTheFirstCycleAsPrinted) {
+  const Zdt zdt(1, 2);
+  base::OptimizerSettings s = settings(2, 1, 6);
+  s.operators = base::Operators::kPrinted;
+  std::size_t both = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::vector<std::vector<double>> universes;
+    std::vector<std::vector<double>> representatives;
+    std::vector<Cost> sent(2);
+    for (std::size_t j = 0; j < 2; ++j) {
+      base::RandomStream random(seed, 5, j);
+      std::vector<double>& x = universes.emplace_back();
+      for (int i = 0; i < 6; ++i) x.push_back(random.uniform());
+      const double* chosen = x.data() + 2 * random.below(3);
+      zdt.evaluate(representatives.emplace_back(chosen, chosen + 2), {&sent[j], 1});
+    }
+    std::vector<std::vector<double>> expected = universes;
+    for (std::size_t j = 0; j < 2; ++j) {
+      std::vector<Cost> costs(3);
+      zdt.evaluate(universes[j], costs);
+      Ranking ranking(3);
+      const std::span<const int> order = ranking.order(costs, 2);
+      std::size_t place = 2;
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (dominates(sent[1 - k], sent[k], 2)) continue;
+        std::ranges::copy(representatives[k], expected[j].begin() + 2 * order[place--]);
+      }
+      both += place == 0 ? 1 : 0;
+    }
+    const Recorded problem(zdt);
+    base::WorkerPool pool(1);
+    Pmomvo optimizer(s, 2, 2);
+    optimizer.run(problem, {}, seed, 5, {2}, pool);
+    ASSERT_EQ(problem.batches.size(), 6U);
+    EXPECT_EQ(optimizer.report().evaluations, 3 * 6);
+    EXPECT_EQ(problem.batches[0], universes[0]);
+    EXPECT_EQ(problem.batches[1], universes[1]);
+    EXPECT_EQ(problem.batches[2], expected[0]);
+    EXPECT_EQ(problem.batches[3], expected[1]);
+  }
+  EXPECT_GT(both, 5U);
+  EXPECT_LT(both, 35U);
+}
+
+TEST(Pmomvo, SharesOnlyAfterTheFirstCycleElsewhere) {
+  const Zdt zdt(1, 2);
+  for (const auto& [operators, sharing] :
+       {std::pair{base::Operators::kCorrected, 1}, std::pair{base::Operators::kPrinted, 0}}) {
+    const Recorded problem(zdt);
+    base::OptimizerSettings s = settings(2, sharing, 6);
+    s.operators = operators;
+    base::WorkerPool pool(1);
+    Pmomvo optimizer(s, 2, 2);
+    optimizer.run(problem, {}, 1, 0, {2}, pool);
+    EXPECT_EQ(problem.batches.size(), 4U);
+    EXPECT_EQ(optimizer.report().evaluations, 2 * 6);
+  }
 }
 
 TEST(Pmomvo, DealsAllUniversesOut) {
