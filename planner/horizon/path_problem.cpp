@@ -9,7 +9,8 @@
 #include <string>
 
 #include "planner/base/multiversion.hpp"
-#include "planner/horizon/path_lanes.hpp"
+#include "planner/horizon/cost_lanes.hpp"
+#include "planner/horizon/flight_lanes.hpp"
 
 namespace jink::planner::horizon {
 namespace {

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is measured on several paths in lockstep, each for itself: the way and its time, the turns, the clearance.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "planner/base/portable_math.hpp"
+#include "planner/base/types.hpp"
+#include "planner/horizon/lanes.hpp"
+#include "planner/horizon/nearby_obstacles.hpp"
+#include "planner/horizon/path_scene.hpp"
+
+namespace jink::planner::horizon {
+
+/// How far paths lead, and how long they take to the target.
+template <std::size_t kLanes>
+struct TravelLanes {
+  Lanes<kLanes> length,  ///< flown, m
+      deviation,         ///< distance from unobstructed flight, summed over the steps, m
+      arrival,           ///< end of the last step that did not end near the target, s
+      stay,              ///< steps for which it has been at the target
+      visited,           ///< 1 once it has stayed there, where that is enough, else 0
+      counts;            ///< 0 where it had by the end of the last stretch, else 1
+
+  /// Nothing flown yet.
+  [[gnu::always_inline]] TravelLanes() {
+    for (std::size_t i = 0; i < kLanes; ++i) counts[i] = 1.0;
+  }
+
+  /// A step over `moved` to `to`, at whose end unobstructed flight is at `unobstructed`.
+  [[gnu::always_inline]] void add(const PointLanes<kLanes>& to, const Lanes<kLanes>& moved, const Vec3& unobstructed) {
+    const Vec3 base = unobstructed;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double x = to.x[i] - base.x();
+      const double y = to.y[i] - base.y();
+      const double z = to.z[i] - base.z();
+      deviation[i] += std::sqrt(x * x + y * y + z * z);
+      length[i] += counts[i] * moved[i];
+    }
+  }
+
+  /// A stretch that ends at time `end`, s, and comes near the target nowhere.
+  [[gnu::always_inline]] void pass(double end) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      arrival[i] = visited[i] > 0.0 ? arrival[i] : end;
+      stay[i] = 0.0;
+    }
+  }
+
+  /// A step over `moved` to `to`, until time `end`, s: it counts for the paths that are then not yet near the target,
+  /// and its length does not for those that have visited it.
+  [[gnu::always_inline]] void add_time(const PathScene& scene, const PointLanes<kLanes>& to, const Lanes<kLanes>& moved,
+                                       double end) {
+    const Vec3 target = scene.target;
+    const double steps_to_stay = scene.visit ? kVisitSteps : base::kInfinity;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double x = to.x[i] - target.x();
+      const double y = to.y[i] - target.y();
+      const double z = to.z[i] - target.z();
+      const double squared = x * x + y * y + z * z;
+      length[i] -= counts[i] * visited[i] * moved[i];
+      arrival[i] = squared > kNear * kNear && visited[i] == 0.0 ? end : arrival[i];
+      const bool at_target = squared <= kVisit * kVisit && moved[i] <= kVisitSpeed * scene.step;
+      stay[i] = at_target ? stay[i] + 1.0 : 0.0;
+      visited[i] = stay[i] >= steps_to_stay ? 1.0 : visited[i];
+    }
+  }
+
+  /// Ends a stretch that comes near the target: what follows does not count for the paths that have visited it.
+  [[gnu::always_inline]] void settle() {
+    for (std::size_t i = 0; i < kLanes; ++i) counts[i] = 1.0 - visited[i];
+  }
+};
+
+/// How paths turn between their legs.
+template <std::size_t kLanes>
+struct SteeringLanes {
+  PointLanes<kLanes> corner,  ///< where the last leg ended
+      direction;              ///< the last leg's way, m; before the first leg the velocity
+  Lanes<kLanes> steering;     ///< sum of the angles between legs, Eq. (3), rad
+
+  /// Begins at `start` with this velocity.
+  [[gnu::always_inline]] SteeringLanes(const PointLanes<kLanes>& start, const Vec3& velocity) {
+    corner.copy(start);
+    direction.set(velocity);
+  }
+
+  /// A leg ends at `to`: the angle to the leg before it. Three loops: the compiler would make one of all that skips the
+  /// arc tangent where it is not needed, lane by lane.
+  [[gnu::always_inline]] void turn(const PointLanes<kLanes>& to) {
+    constexpr double kNoDirection = 1e-9;  // m, m/s: as in angle_between
+    PointLanes<kLanes> leg;
+    Lanes<kLanes> across, along, angle;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double lx = to.x[i] - corner.x[i];
+      const double ly = to.y[i] - corner.y[i];
+      const double lz = to.z[i] - corner.z[i];
+      const double cx = direction.y[i] * lz - direction.z[i] * ly;
+      const double cy = direction.z[i] * lx - direction.x[i] * lz;
+      const double cz = direction.x[i] * ly - direction.y[i] * lx;
+      leg.x[i] = lx;
+      leg.y[i] = ly;
+      leg.z[i] = lz;
+      across[i] = std::sqrt(cx * cx + cy * cy + cz * cz);
+      along[i] = direction.x[i] * lx + direction.y[i] * ly + direction.z[i] * lz;
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) angle[i] = base::arc_tangent2(across[i], along[i]);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double dx = direction.x[i];
+      const double dy = direction.y[i];
+      const double dz = direction.z[i];
+      const bool straight = dx * dx + dy * dy + dz * dz < kNoDirection * kNoDirection;
+      const double counted = straight ? 0.0 : angle[i];
+      const bool none = leg.x[i] * leg.x[i] + leg.y[i] * leg.y[i] + leg.z[i] * leg.z[i] < kShortLeg * kShortLeg;
+      steering[i] += none ? 0.0 : counted;
+      direction.x[i] = none ? dx : leg.x[i];
+      direction.y[i] = none ? dy : leg.y[i];
+      direction.z[i] = none ? dz : leg.z[i];
+      corner.x[i] = none ? corner.x[i] : to.x[i];
+      corner.y[i] = none ? corner.y[i] : to.y[i];
+      corner.z[i] = none ? corner.z[i] : to.z[i];
+    }
+  }
+};
+
+/// How near paths come to what they are to keep away from.
+template <std::size_t kLanes>
+struct ClearanceLanes {
+  Lanes<kLanes> dip,  ///< into the soft distances, as f3 counts it
+      violation;      ///< of the hard distances and the volume
+
+  /// Violation for one step that ends at `to`: the distance outside the volume times the step's duration, m s.
+  [[gnu::always_inline]] void add_outside(const PathScene& scene, const PointLanes<kLanes>& to) {
+    const base::Box& volume = scene.volume;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double x = PlainBox::outside(volume.min.x(), volume.max.x(), to.x[i]);
+      const double y = PlainBox::outside(volume.min.y(), volume.max.y(), to.y[i]);
+      const double z = PlainBox::outside(volume.min.z(), volume.max.z(), to.z[i]);
+      violation[i] += std::sqrt(x * x + y * y + z * z) * scene.step;
+    }
+  }
+
+  /// The swept test of geometry.hpp in every lane.
+  [[gnu::always_inline]] void add_obstacle(const NearbyObstacle& obstacle, const PointLanes<kLanes>& from,
+                                           const PointLanes<kLanes>& to, double weight) {
+    const Vec3 c = obstacle.from;
+    const Vec3 d = obstacle.to;
+    const double hard = obstacle.hard;
+    const double soft = obstacle.soft;
+    const double extra = soft > hard ? soft - hard : 1.0;
+    const double dip_weight = soft > hard ? weight : 0.0;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double px = from.x[i] - c.x();
+      const double py = from.y[i] - c.y();
+      const double pz = from.z[i] - c.z();
+      const double dx = to.x[i] - d.x() - px;
+      const double dy = to.y[i] - d.y() - py;
+      const double dz = to.z[i] - d.z() - pz;
+      const double lengths = dx * dx + dy * dy + dz * dz + 1e-300;
+      const double nearest = -(dx * px + dy * py + dz * pz) / lengths;
+      const double from_0 = nearest > 0.0 ? nearest : 0.0;
+      const double s = from_0 < 1.0 ? from_0 : 1.0;
+      const double qx = px + s * dx;
+      const double qy = py + s * dy;
+      const double qz = pz + s * dz;
+      const double distance = std::sqrt(qx * qx + qy * qy + qz * qz);
+      const double depth = (soft - distance) / extra;
+      const double positive = depth > 0.0 ? depth : 0.0;
+      const double bounded = positive < 1.0 ? positive : 1.0;
+      dip[i] += dip_weight * (bounded * bounded);
+      const double deep = hard - distance;
+      violation[i] += weight * (deep > 0.0 ? deep : 0.0);
+    }
+  }
+};
+
+}  // namespace jink::planner::horizon
