@@ -2,7 +2,6 @@
 #include "planner/geometry/known_path.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace jink::planner::geometry {
 
@@ -12,18 +11,6 @@ double KnownPath::fastest() const {
     most = std::max(most, (points[i].position - points[i - 1].position).norm() / (points[i].t - points[i - 1].t));
   }
   return most;
-}
-
-bool KnownPath::well_formed() const {
-  // `until` may be infinite.
-  if (points.empty() || std::isnan(until)) return false;
-  if (!std::isfinite(offset + radius + margin + position_sigma + velocity_sigma + age)) return false;
-  double before = -base::kInfinity;
-  for (const base::TimedPoint& point : points) {
-    if (!(std::isfinite(point.t) && point.t > before && point.position.allFinite())) return false;
-    before = point.t;
-  }
-  return std::isfinite(fastest());
 }
 
 }  // namespace jink::planner::geometry

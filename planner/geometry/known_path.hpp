@@ -28,8 +28,6 @@ struct KnownPath {
   [[nodiscard]] Vec3 position(double t) const { return base::sample(points, t + offset).position; }
   /// The largest speed between any two points.
   [[nodiscard]] double fastest() const;
-  /// Numbers finite, times strictly increasing, speeds finite, at least one point.
-  [[nodiscard]] bool well_formed() const;
 };
 
 }  // namespace jink::planner::geometry

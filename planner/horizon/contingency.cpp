@@ -31,6 +31,13 @@ std::vector<Vec3> directions() {
 
 Stop Contingency::choose(const PathRequest& request, std::span<const base::TimedPath> stops) {
   assert(!stops.empty());
+  PathRequest evasion = request;
+  evasion.target = stops.front().back().position;
+  if (!is_valid(evasion)) {
+    Stop unjudged{stops.front(), {}, 0};
+    unjudged.verification.valid = false;
+    return unjudged;
+  }
   Stop best;
   int looked_at = 0;
   // True where there is nothing left to look for.
@@ -44,7 +51,6 @@ Stop Contingency::choose(const PathRequest& request, std::span<const base::Timed
   for (const base::TimedPath& stop : stops) {
     if (consider(stop)) return best;
   }
-  PathRequest evasion = request;
   const std::vector<double> unobstructed(static_cast<std::size_t>(problem_.dimension()), 0.0);
   for (const double away : kAway) {
     for (const Vec3& direction : directions()) {

@@ -26,8 +26,9 @@ class Contingency {
 
   /// The first stop that is free up to the horizon and keeps request.margin: of `stops`, which begin in the request's
   /// state at time 0, in their order; then of stops above, beside and below the end of the first, the nearest first.
-  /// Where none keeps the margin: the one that does the least harm. The request's target is not looked at.
-  /// Precondition: `stops` holds a path, none of them is empty. O(stops · (points + tracks)), allocates.
+  /// Where none keeps the margin: the one that does the least harm. The request's target is not looked at. For a
+  /// request that is_valid() in path_check.hpp refuses: the first, not valid. Precondition: `stops` holds a path, none
+  /// of them is empty. O(stops · (points + tracks)), allocates.
   Stop choose(const PathRequest& request, std::span<const base::TimedPath> stops);
 
  private:

@@ -30,17 +30,6 @@ base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSett
   return o;
 }
 
-bool finite(const PathRequest& request) {
-  return request.position.allFinite() && request.velocity.allFinite() && request.target.allFinite() &&
-         std::all_of(request.tracks.begin(), request.tracks.end(),
-                     [](const base::Track& t) {
-                       return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
-                              std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
-                     }) &&
-         std::all_of(request.paths.begin(), request.paths.end(),
-                     [](const geometry::KnownPath& p) { return p.well_formed(); });
-}
-
 base::TimedPath unobstructed(const PathProblem& problem) {
   return problem.motion(std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0));
 }
@@ -111,7 +100,7 @@ verify::Plan HorizonPlanner::repeat(const PathRequest& request, const base::Time
 
 verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedPath& previous, const Random& random,
                                   const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool) {
-  if (!finite(request)) return {};
+  if (!is_valid(request)) return {};
   problem_.prepare(request);
   if (std::optional<verify::Plan> settled = without_search(request, previous)) return *std::move(settled);
   const std::optional<Vec3> via = request.stuck ? around(request) : std::nullopt;

@@ -41,7 +41,8 @@ class HorizonPlanner {
   /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it
   /// was verified free in continuous time, apart from the optimizer. Where nothing was found that keeps the margin, the
   /// search is repeated with more of the vehicle's acceleration (settings.emergency_share), and where that finds
-  /// nothing free either the path is the candidate that stays free the longest, then has the softest contact.
+  /// nothing free either the path is the candidate that stays free the longest, then has the softest contact. A request
+  /// that is_valid() in path_check.hpp refuses gets kInvalid and no path.
   verify::Plan plan(const PathRequest& request, const base::TimedPath& previous, std::uint64_t seed,
                     std::uint64_t number, const base::Budget& budget, base::WorkerPool& pool);
 

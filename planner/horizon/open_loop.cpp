@@ -7,6 +7,7 @@
 
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/horizon_planner.hpp"
+#include "planner/horizon/path_check.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -95,6 +96,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
 verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
                             const OpenLoopRequest& request, std::uint64_t seed, const base::Budget& budget,
                             base::WorkerPool& pool, const optimizer::MakeOptimizer& make) {
+  if (!is_valid(request.path) || !(request.time_limit >= 0.0) || !(request.commit > 0.0)) return {};
   if (verify::start_blocked(request.path.position, request.path.vehicle.radius, request.path.tracks,
                             request.path.paths)) {
     verify::Plan plan;

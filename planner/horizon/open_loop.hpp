@@ -16,8 +16,8 @@ namespace jink::planner::horizon {
 /// What an open-loop plan starts from.
 struct OpenLoopRequest {
   PathRequest path;         ///< from rest at the start; tracks valid at t = 0
-  double time_limit = 0.0;  ///< the path is cut here
-  double commit = 0.5;      ///< how much of each plan is kept before planning on
+  double time_limit = 0.0;  ///< the path is cut here; not below 0
+  double commit = 0.5;      ///< how much of each plan is kept before planning on; above 0
 };
 
 /// One plan after the other along the path itself, the obstacles extrapolated from t = 0. The shortest path is asked
@@ -27,7 +27,7 @@ struct OpenLoopRequest {
 /// that comes nearer. `budget` is that of each plan, its deadline that of all.
 ///
 /// The finished path is verified: kReaches only where all of it is free and it ends at the target within the time
-/// limit. `make` and what is thrown: as for HorizonPlanner.
+/// limit, kInvalid and no path for a request that holds what is none. `make` and what is thrown: as for HorizonPlanner.
 verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
                             const OpenLoopRequest& request, std::uint64_t seed, const base::Budget& budget,
                             base::WorkerPool& pool, const optimizer::MakeOptimizer& make = {});

@@ -4,7 +4,16 @@
 #include <cmath>
 #include <span>
 
+#include "planner/geometry/validity.hpp"
+
 namespace jink::planner::horizon {
+bool is_valid(const PathRequest& request) {
+  using geometry::is_amount, geometry::is_within;
+  return is_within(request.position, geometry::kFarthest) && is_within(request.velocity, geometry::kFastest) &&
+         is_within(request.target, geometry::kFarthest) && geometry::is_valid(request.vehicle) &&
+         is_amount(request.margin) && is_amount(request.track_acceleration, geometry::kHardest) &&
+         geometry::is_valid_world(request.volume, request.tracks, request.paths, request.acceleration_trust);
+}
 
 verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {
   const auto check = [&](std::span<const base::TimedPoint> points) {

@@ -8,6 +8,10 @@
 
 namespace jink::planner::horizon {
 
+/// Whether all numbers are ones to plan with (planner/geometry/validity.hpp), margin and track_acceleration not below
+/// 0. O(tracks + points of the paths).
+[[nodiscard]] bool is_valid(const PathRequest& request);
+
 /// Checks a path among the request's obstacles up to a path time, s; a path that ends before waits at its end.
 [[nodiscard]] verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until);
 

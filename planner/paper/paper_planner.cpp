@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/geometry/validity.hpp"
 #include "planner/optimizer/pmomvo.hpp"
 #include "planner/optimizer/topsis.hpp"
 #include "planner/paper/waypoint_problem.hpp"
@@ -64,12 +65,10 @@ void append(base::TimedPath& path, const Vec3& to, const base::VehicleLimits& ve
   path.push_back({from.t + duration, to, Vec3::Zero(), Vec3::Zero()});
 }
 
-bool valid(const PaperRequest& request) {
-  const auto finite = [](const base::Track& t) {
-    return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() && std::isfinite(t.radius);
-  };
-  return request.start.allFinite() && request.target.allFinite() &&
-         std::all_of(request.tracks.begin(), request.tracks.end(), finite);
+bool is_valid(const PaperRequest& request) {
+  return geometry::is_within(request.start, geometry::kFarthest) &&
+         geometry::is_within(request.target, geometry::kFarthest) && geometry::is_valid(request.vehicle) &&
+         geometry::is_valid_world(request.volume, request.tracks, {}, base::kInfinity);
 }
 
 /// Plans the free waypoints into `plan.path`, which holds the start.
@@ -131,7 +130,7 @@ verify::Plan plan_paper(const PaperRequest& request, optimizer::Optimizer& optim
     throw std::invalid_argument("waypoints: " + std::to_string(request.settings.waypoints) + " is not at least 2");
   }
   verify::Plan plan;
-  if (!valid(request)) return plan;
+  if (!is_valid(request)) return plan;
   plan.path.push_back({0.0, request.start, Vec3::Zero(), Vec3::Zero()});
   if (verify::start_blocked(request.start, request.vehicle.radius, request.tracks)) {
     plan.status = verify::PlanStatus::kStartBlocked;

@@ -21,7 +21,7 @@ enum class PlanStatus {
   kProgresses,    ///< free, verified, for the time looked ahead; beyond that nothing is claimed
   kBlocked,       ///< no free plan was found: the path is the least bad manoeuvre
   kStartBlocked,  ///< the vehicle is inside an obstacle at the start
-  kInvalid        ///< the request holds a number that is not finite; there is no path
+  kInvalid        ///< the request holds a number that is none or absurd; there is no path
 };
 /// The status as the flight log has it: reaches, progresses, blocked, start_blocked or invalid.
 std::string_view to_string(PlanStatus status);

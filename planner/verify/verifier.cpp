@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "planner/geometry/validity.hpp"
+
 namespace jink::planner::verify {
 namespace {
 
@@ -118,19 +120,49 @@ double believed(const base::Track& track, const VerifierInput& input) {
   return left > 0.0 ? left : 0.0;
 }
 
-bool well_formed(const VerifierInput& input) {
-  bool good = !input.path.empty() && std::isfinite(input.vehicle_radius);
-  double before = -base::kInfinity;
-  for (const base::TimedPoint& point : input.path) {
-    good = good && point.position.allFinite() && std::isfinite(point.t) && point.t > before;
-    before = point.t;
+/// Whether the track stays, while it is looked at, where its distances can be told. Without a root: there are many.
+bool stays_near(const base::Track& track, const VerifierInput& input, double time) {
+  const double accelerated = std::min(time, believed(track, input));
+  const double speed = track.velocity.lpNorm<1>() + accelerated * track.acceleration.lpNorm<1>();
+  return track.position.lpNorm<1>() + time * speed <= geometry::kFarthest &&
+         geometry::is_within(track.velocity + accelerated * track.acceleration, geometry::kFastest);
+}
+
+/// Whether the instants of the path's points, from `tracks_time` on, are told finely enough for its speed.
+bool is_on_time(const geometry::KnownPath& path, const VerifierInput& input) {
+  const double first = std::abs(input.tracks_time + (path.points.front().t - path.offset));
+  const double last = std::abs(input.tracks_time + (path.points.back().t - path.offset));
+  const double most = std::max({first, last, std::abs(input.tracks_time)});
+  return most * geometry::kFastest <= geometry::kFarthest || most * path.fastest() <= geometry::kFarthest;
+}
+
+/// Whether all numbers are ones that a clearance follows from, to the accuracy stated.
+bool can_judge(const VerifierInput& input) {
+  if (!geometry::is_valid_path(input.path) || !geometry::is_amount(input.vehicle_radius) ||
+      !(std::abs(input.tracks_time) <= geometry::kLongest) || std::isnan(input.until) ||
+      !geometry::is_valid_world(input.volume, input.tracks, input.known, input.acceleration_trust)) {
+    return false;
   }
-  for (const base::Track& track : input.tracks) {
-    good = good && track.position.allFinite() && track.velocity.allFinite() && track.acceleration.allFinite() &&
-           std::isfinite(track.radius) && std::isfinite(track.age);
+  const double last = std::min(input.path.back().t, input.until);
+  const double time = std::max(std::abs(last - input.tracks_time), std::abs(input.path.front().t - input.tracks_time));
+  return std::all_of(input.tracks.begin(), input.tracks.end(),
+                     [&](const base::Track& track) { return stays_near(track, input, time); }) &&
+         std::all_of(input.known.begin(), input.known.end(),
+                     [&](const geometry::KnownPath& path) { return is_on_time(path, input); });
+}
+
+/// Both ends of a segment inside: all of it is. The one that `until` is in counts up to there.
+bool stays_inside(const VerifierInput& input) {
+  constexpr double kRounding = 1e-9;  // m
+  if (!input.volume.contains(input.path.front().position, kRounding)) return input.path.front().t > input.until;
+  for (std::size_t i = 1; i < input.path.size(); ++i) {
+    const base::TimedPoint& a = input.path[i - 1];
+    const base::TimedPoint& b = input.path[i];
+    if (a.t >= input.until) return true;
+    const double share = b.t > input.until ? (input.until - a.t) / (b.t - a.t) : 1.0;
+    if (!input.volume.contains(a.position + share * (b.position - a.position), kRounding)) return false;
   }
-  for (const geometry::KnownPath& known : input.known) good = good && known.well_formed();
-  return good;
+  return true;
 }
 
 /// A track as the check sees it. Times are the vehicle path's.
@@ -340,11 +372,9 @@ class PathCheck {
 
 Verification verify(const VerifierInput& input) {
   Verification result;
-  result.valid = well_formed(input);
+  result.valid = can_judge(input);
   if (!result.valid) return result;
-  for (const base::TimedPoint& point : input.path) {
-    if (!input.volume.contains(point.position, 1e-9)) result.inside_volume = false;
-  }
+  result.inside_volume = stays_inside(input);
   PathCheck check(input);
   for (const base::Track& track : input.tracks) check.add(TrackMotion(track, input), result);
   for (const geometry::KnownPath& known : input.known) check.add(KnownMotion(known, input), result);

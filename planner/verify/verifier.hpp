@@ -20,8 +20,8 @@ struct Verification {
   std::uint64_t nearest_id = 0;            ///< to which track or known path
   std::optional<double> first_contact;     ///< first time at which a clearance falls below zero
   double contact_speed = 0.0;              ///< relative speed at the first contact
-  bool inside_volume = true;               ///< the whole path lies in the volume
-  bool valid = true;  ///< the input could be judged: numbers finite, times increasing, a path there
+  bool inside_volume = true;               ///< the path lies in the volume, up to VerifierInput::until
+  bool valid = true;                       ///< the input could be judged, see verify()
 
   /// What could not be judged is not free.
   [[nodiscard]] bool free() const { return valid && !first_contact && inside_volume; }
@@ -35,14 +35,23 @@ struct VerifierInput {
   double vehicle_radius = 0.0;                   ///< of the sphere around the vehicle
   base::Box volume;                              ///< that the path must not leave
   double acceleration_trust = base::kInfinity;   ///< as in predict_position, from the measurement on
-  double until = base::kInfinity;                ///< path time up to which obstacles count
+  double until = base::kInfinity;                ///< path time up to which obstacles and the volume count
   std::span<const geometry::KnownPath> known{};  ///< offsets and `until` count from `tracks_time`; margins do not count
 };
 
+/// m: what a clearance is off by at most, where it is judged at all. Within 10 km of the origin, 600 s and at up to 1
+/// km/s it is off by at most kUsualAccuracy. Most of it is how finely instants are told (1e-13 s), times the speed.
+inline constexpr double kAccuracy = 1e-7;
+inline constexpr double kUsualAccuracy = 1e-9;  ///< m, see kAccuracy
+
 /// Minimum over all instants, not samples: between two points and the instants at which a prediction changes or a known
-/// path turns, the squared distance is a polynomial of degree four whose stationary points are all found. Accuracy 1e-9
-/// m. What is certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and
-/// points for each track that comes near; at worst O(points · tracks).
+/// path turns, the squared distance is a polynomial of degree four whose stationary points are all found. What is
+/// certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
+/// each track that comes near; at worst O(points · tracks).
+///
+/// Not valid, and so not free, is what planner/geometry/validity.hpp refuses (no path, times that do not increase,
+/// numbers that are none, negative radii, what is larger than its bounds), and tracks that get farther than kFarthest
+/// or faster than kFastest while they count: their distances could not be told to kAccuracy.
 Verification verify(const VerifierInput& input);
 
 }  // namespace jink::planner::verify

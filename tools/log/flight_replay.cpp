@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "planner/geometry/validity.hpp"
+
 namespace jink::tools::log {
 namespace {
 
@@ -99,7 +101,7 @@ planner::geometry::KnownPath known_path_of(const Json& item) {
   path.velocity_sigma = exact(member(item, "velocity_sigma"), "velocity_sigma");
   path.age = exact(member(item, "age"), "age");
   path.until = exact(member(item, "until"), "until");
-  if (!path.well_formed()) refuse("\"paths\" holds a path that none can fly");
+  if (!planner::geometry::is_valid(path)) refuse("\"paths\" holds a path that none can fly");
   return path;
 }
 
@@ -126,7 +128,7 @@ bridge::prediction::Forecast forecast_of(const Json& item, std::size_t tracks) {
     forecast.motion = motion;
   }
   // What the planner is given must be a path.
-  if (!bridge::prediction::to_path(forecast, 1.0, 0.5).well_formed())
+  if (!planner::geometry::is_valid(bridge::prediction::to_path(forecast, 1.0, 0.5)))
     refuse("\"forecasts\" holds a motion that none can fly");
   return forecast;
 }

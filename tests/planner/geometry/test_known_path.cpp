@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planner/base/random.hpp"
+#include "planner/geometry/validity.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/initial_paths.hpp"
 #include "planner/horizon/nearby_obstacles.hpp"
@@ -107,14 +108,14 @@ TEST(KnownPath, StandsBeforeItsFirstPointAndAfterItsLast) {
   EXPECT_EQ(path.position(2.0), Vec3(1, 2, 0));
   EXPECT_EQ(path.position(50.0), Vec3(1, 4, 0));
   EXPECT_DOUBLE_EQ(path.fastest(), 2.0);
-  EXPECT_TRUE(path.well_formed());
+  EXPECT_TRUE(is_valid(path));
 }
 
 TEST(KnownPath, IsNotWellFormedWithoutFiniteNumbersInOrderOfTime) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   KnownPath good;
   good.points = {{0.0, {1, 0, 0}, kZero, kZero}, {1.0, {1, 4, 0}, kZero, kZero}};
-  ASSERT_TRUE(good.well_formed());
+  ASSERT_TRUE(is_valid(good));
   std::vector<KnownPath> bad(7, good);
   bad[0].points.clear();
   bad[1].points[1].t = 0.0;
@@ -126,7 +127,7 @@ TEST(KnownPath, IsNotWellFormedWithoutFiniteNumbersInOrderOfTime) {
   bad[6].points[0].t = 1.0 - 1e-9;
   const base::TimedPath path{{0.0, {50, 0, 0}, kZero, kZero}, {1.0, {51, 0, 0}, kZero, kZero}};
   for (const KnownPath& known : bad) {
-    EXPECT_FALSE(known.well_formed());
+    EXPECT_FALSE(is_valid(known));
     EXPECT_FALSE(verify::verify({path, {}, 0.0, 0.3, {}, base::kInfinity, base::kInfinity, {&known, 1}}).free());
     horizon::PathRequest r = request();
     r.paths = {&known, 1};

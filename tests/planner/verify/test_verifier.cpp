@@ -135,6 +135,36 @@ TEST(Verifier, ReportsAPathThatLeavesTheVolume) {
   EXPECT_FALSE(verify(input).free());
 }
 
+// Out of the volume at x = 3, which the path passes at t = 3: within a segment, and at a point.
+TEST(Verifier, JudgesTheVolumeUpToTheTimeAskedAndNotBeyond) {
+  for (const base::TimedPath& path : {line({0, 0, 0}, {5, 0, 0}, 5.0), base::TimedPath{{0, {0, 0, 0}, kZero, kZero},
+                                                                                       {3, {3, 0, 0}, kZero, kZero},
+                                                                                       {4, {4, 0, 0}, kZero, kZero},
+                                                                                       {5, {5, 0, 0}, kZero, kZero}}}) {
+    VerifierInput input;
+    input.path = path;
+    input.volume = {{-1, -1, -1}, {3, 1, 1}};
+    input.until = 2.0;
+    EXPECT_TRUE(verify(input).free());
+    input.until = 3.0;
+    EXPECT_TRUE(verify(input).free());
+    input.until = 3.1;
+    EXPECT_FALSE(verify(input).inside_volume);
+    input.until = 5.0;
+    EXPECT_FALSE(verify(input).inside_volume);
+    input.until = base::kInfinity;
+    EXPECT_FALSE(verify(input).inside_volume);
+  }
+  // One point: that is all there is to judge.
+  const base::TimedPath outside{{1.0, {4, 0, 0}, kZero, kZero}};
+  VerifierInput input;
+  input.path = outside;
+  input.volume = {{-1, -1, -1}, {3, 1, 1}};
+  EXPECT_FALSE(verify(input).free());
+  input.until = 0.5;
+  EXPECT_TRUE(verify(input).free());
+}
+
 TEST(Verifier, DoesNotPassAPathThatIsNotFinite) {
   EXPECT_FALSE(check({{0, {0, 0, 0}, kZero, kZero}, {1, {std::nan(""), 0, 0}, kZero, kZero}}, {}).free());
 }
@@ -349,6 +379,70 @@ TEST(Verifier, WhatCannotBeJudgedIsNotFree) {
   std::vector<base::Track> bad = tracks;
   bad[0].velocity.y() = nan;
   EXPECT_FALSE(verify({good, bad, 0.0, 0.3, {}}).free());
+}
+
+// Numbers that are ones, but so large that nothing follows from them: squares that overflow, differences that round.
+TEST(Verifier, WhatIsTooLargeToJudgeIsNotFree) {
+  const base::TimedPath path{{0.0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()},
+                             {10.0, {10, 0, 0}, Vec3::Zero(), Vec3::Zero()}};
+  base::Track far;
+  far.position = {100, 50, 0};
+  far.radius = 1.0;
+  const auto with = [&](auto change) {
+    base::Track track = far;
+    change(track);
+    return std::vector<base::Track>{track};
+  };
+  const auto judged = [&](const std::vector<base::Track>& tracks) {
+    const Verification v = verify({path, tracks, 0.0, 0.3, {}});
+    EXPECT_EQ(v.valid, v.free());
+    return v.valid;
+  };
+  ASSERT_TRUE(judged({far}));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.acceleration = {0, 0, 1e15}; })));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.acceleration = {0, 0, -1e160}; })));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.velocity = {1e155, 0, 0}; })));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.position = {1e200, 0, 0}; })));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.radius = 1e160; })));
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.radius = -0.1; })));
+  // Small enough to begin with, not for ten seconds.
+  EXPECT_FALSE(judged(with([](base::Track& t) { t.acceleration = {0, 0, 9e4}; })));
+  // Told so long ago, or so long before the path, that its place now is not known to a metre.
+  for (const double tracks_time : {std::nan(""), base::kInfinity, -base::kInfinity, -1e12, -1e9}) {
+    const std::vector<base::Track> tracks = with([](base::Track& t) { t.velocity = {1, 0, 0}; });
+    EXPECT_FALSE(verify({path, tracks, tracks_time, 0.3, {}}).free()) << tracks_time;
+  }
+  EXPECT_FALSE(verify({path, std::vector<base::Track>{far}, 0.0, -0.1, {}}).free());
+  EXPECT_FALSE(verify({path, std::vector<base::Track>{far}, 0.0, 1e160, {}}).free());
+  EXPECT_FALSE(verify({path, std::vector<base::Track>{far}, 0.0, 0.3, {}, base::kInfinity, std::nan("")}).free());
+  for (const base::TimedPoint& last : {base::TimedPoint{1e300, {1, 0, 0}, Vec3::Zero(), Vec3::Zero()},
+                                       base::TimedPoint{10.0, {1e200, 0, 0}, Vec3::Zero(), Vec3::Zero()},
+                                       base::TimedPoint{1e-9, {1, 0, 0}, Vec3::Zero(), Vec3::Zero()}}) {
+    const base::TimedPath absurd{path.front(), last};
+    EXPECT_FALSE(verify({absurd, std::vector<base::Track>{far}, 0.0, 0.3, {}}).free());
+  }
+  geometry::KnownPath known;
+  known.points = {{1e9, {50, 9, 0}, Vec3::Zero(), Vec3::Zero()}, {1e9 + 9.0, {60, 9, 0}, Vec3::Zero(), Vec3::Zero()}};
+  known.offset = 1e9;
+  EXPECT_TRUE(verify({path, {}, 0.0, 0.3, {}, base::kInfinity, base::kInfinity, {&known, 1}}).free());
+  known.offset = 0.0;  // its instants are told to 1e-7 s
+  EXPECT_FALSE(verify({path, {}, 0.0, 0.3, {}, base::kInfinity, base::kInfinity, {&known, 1}}).free());
+}
+
+// 600 s at 300 m/s through a world of many kilometres, a track that falls for a minute, an obstacle as large as a hill.
+TEST(Verifier, JudgesWhatIsReasonable) {
+  base::TimedPath path;
+  for (int i = 0; i <= 600; ++i) path.push_back({1.0 * i, {300.0 * i, 0, 1000}, Vec3::Zero(), Vec3::Zero()});
+  base::Track hill;
+  hill.position = {9e4, 0, -5000};
+  hill.radius = 5900.0;
+  base::Track falls;
+  falls.position = {0, 4e5, 1e4};
+  falls.velocity = {0, -300, 0};
+  falls.acceleration = {0, 0, -10};
+  const Verification v = verify({path, std::vector<base::Track>{hill, falls}, 0.0, 10.0, {}});
+  EXPECT_TRUE(v.free());
+  EXPECT_NEAR(v.min_clearance, 90.0, kAccuracy);
 }
 
 // An acceleration is believed for `trust` seconds from the measurement: one that is 0.6 s old has 0.1 s of 0.7 s left.

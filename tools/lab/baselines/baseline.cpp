@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/horizon/path_check.hpp"
+
 namespace jink::tools::lab::baselines {
 namespace {
 
@@ -22,7 +24,7 @@ void BaselineTask::start(bridge::companion::PlanJob job) {
   result.job = std::move(job);
   result.job.request.tracks = result.job.tracks;
   result.job.request.paths = result.job.paths;
-  if (is_finite(result.job.request)) result.plan = baseline_->plan(result.job);
+  if (planner::horizon::is_valid(result.job.request)) result.plan = baseline_->plan(result.job);
   result.ms = 1e3 * latency_;
 }
 
@@ -31,17 +33,6 @@ std::optional<bridge::companion::PlanResult> BaselineTask::poll(double now) {
   std::optional<bridge::companion::PlanResult> result = std::exchange(result_, std::nullopt);
   result->missed = now > result->job.start + kClockRounding;
   return result;
-}
-
-bool is_finite(const planner::horizon::PathRequest& request) {
-  const auto track_is = [](const planner::base::Track& t) {
-    return t.position.allFinite() && t.velocity.allFinite() && t.acceleration.allFinite() &&
-           std::isfinite(t.radius + t.position_sigma + t.velocity_sigma + t.age);
-  };
-  return request.position.allFinite() && request.velocity.allFinite() && request.target.allFinite() &&
-         std::all_of(request.tracks.begin(), request.tracks.end(), track_is) &&
-         std::all_of(request.paths.begin(), request.paths.end(),
-                     [](const planner::geometry::KnownPath& path) { return path.well_formed(); });
 }
 
 std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::PathRequest& request,

@@ -37,9 +37,6 @@ class BaselineTask final : public bridge::companion::PlannerTask {
   std::optional<bridge::companion::PlanResult> result_;
 };
 
-/// Whether all numbers of a request are finite.
-[[nodiscard]] bool is_finite(const planner::horizon::PathRequest& request);
-
 /// The request's tracks, as spheres that the vehicle's centre must not enter: grown by the vehicle's radius, the margin
 /// and `sigma_factor` standard deviations of the position as it is now (at most `clearance_limit`), which is what jink
 /// asks for too. Vehicles that told their paths follow, each as a track at its present velocity.

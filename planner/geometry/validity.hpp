@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a number of a request may be: the one check of all that is planned for or judged. What is larger than this could
+// not be judged to the accuracy that the verifier states.
+#pragma once
+
+#include <span>
+
+#include "planner/base/trajectory.hpp"
+#include "planner/base/types.hpp"
+#include "planner/geometry/known_path.hpp"
+
+namespace jink::planner::geometry {
+
+inline constexpr double kFarthest = 1e8;  ///< m, from the origin; of a length too
+inline constexpr double kFastest = 1e5;   ///< m/s
+inline constexpr double kHardest = 1e5;   ///< m/s²
+inline constexpr double kLongest = 1e10;  ///< s, from a clock's 0, which may be 1970
+
+/// A length, a time, or a standard deviation: not below 0, at most `most`. False for NaN, as all below.
+[[nodiscard]] constexpr bool is_amount(double value, double most = kFarthest) {
+  return value >= 0.0 && value <= most;
+}
+/// At most `most` long.
+[[nodiscard]] inline bool is_within(const Vec3& vector, double most) {
+  return vector.squaredNorm() <= most * most;
+}
+
+/// Whether min is nowhere above max; either may be infinite, so that there is no bound.
+[[nodiscard]] bool is_valid(const base::Box& volume);
+/// Whether radius, drag and damping are not below 0, and all else above it.
+[[nodiscard]] bool is_valid(const base::VehicleLimits& vehicle);
+/// Whether it is a body that moves: radius, standard deviations and age not below 0.
+[[nodiscard]] bool is_valid(const base::Track& track);
+/// Whether it is a path, and its radius, margin, standard deviations and age are not below 0. O(points).
+[[nodiscard]] bool is_valid(const KnownPath& path);
+/// Whether it holds a point and its times increase, with no speed between points above kFastest. Of the points times
+/// and positions count: these are the path. O(points).
+[[nodiscard]] bool is_valid_path(std::span<const base::TimedPoint> path);
+
+/// What a path is planned in and judged among. `acceleration_trust` may be infinite. O(tracks + points of the paths).
+[[nodiscard]] bool is_valid_world(const base::Box& volume, std::span<const base::Track> tracks,
+                                  std::span<const KnownPath> paths, double acceleration_trust);
+
+}  // namespace jink::planner::geometry
