@@ -98,9 +98,11 @@ verify::Plan HorizonPlanner::repeat(const PathRequest& request, const base::Time
   return make(request, previous, {seed, number}, {first, searches[1].schedule > 0 ? budget(searches[1]) : first}, pool);
 }
 
-verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedPath& previous, const Random& random,
+verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedPath& before, const Random& random,
                                   const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool) {
   if (!is_valid(request)) return {};
+  const base::TimedPath none;
+  const base::TimedPath& previous = continues(before, request, settings_.step) ? before : none;
   problem_.prepare(request);
   if (std::optional<verify::Plan> settled = without_search(request, previous)) return *std::move(settled);
   const std::optional<Vec3> via = request.stuck ? around(request) : std::nullopt;

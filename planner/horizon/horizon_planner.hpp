@@ -35,7 +35,8 @@ class HorizonPlanner {
                           const optimizer::MakeOptimizer& make = {});
 
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
-  /// empty: none. It seeds the search, and it is kept where it is still free and a new plan is not clearly better.
+  /// empty: none, as one that does not begin in the request's state (continues() in path_check.hpp). It seeds the
+  /// search, and it is kept where it is still free and a new plan is not clearly better.
   /// `number` counts the plans of a flight and names the random stream.
   ///
   /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it
@@ -64,7 +65,7 @@ class HorizonPlanner {
     std::uint64_t seed = 1, stream = 0;
   };
   /// With one budget for each search.
-  verify::Plan make(const PathRequest& request, const base::TimedPath& previous, const Random& random,
+  verify::Plan make(const PathRequest& request, const base::TimedPath& before, const Random& random,
                     const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool);
   [[nodiscard]] std::optional<Vec3> around(const PathRequest& request) const;
   [[nodiscard]] std::optional<verify::Plan> without_search(const PathRequest& request,

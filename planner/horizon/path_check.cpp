@@ -7,12 +7,28 @@
 #include "planner/geometry/validity.hpp"
 
 namespace jink::planner::horizon {
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // m
+constexpr double kStray = 0.06;      // m, kArrival and what a path that leads back to a plan turns
+
+}  // namespace
+
 bool is_valid(const PathRequest& request) {
   using geometry::is_amount, geometry::is_within;
   return is_within(request.position, geometry::kFarthest) && is_within(request.velocity, geometry::kFastest) &&
          is_within(request.target, geometry::kFarthest) && geometry::is_valid(request.vehicle) &&
          is_amount(request.margin) && is_amount(request.track_acceleration, geometry::kHardest) &&
          geometry::is_valid_world(request.volume, request.tracks, request.paths, request.acceleration_trust);
+}
+
+bool continues(const base::TimedPath& path, const PathRequest& request, double step) {
+  if (!geometry::is_valid_path(path) || path.front().t > 0.0) return false;
+  const Vec3 first = base::sample(path, 0.0).position;
+  const Vec3 later = base::sample(path, step).position;
+  return geometry::is_within(first - request.position, kSamePlace) &&
+         geometry::is_within(later - first - step * request.velocity,
+                             request.vehicle.max_acceleration * step * step + kStray);
 }
 
 verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {

@@ -12,6 +12,12 @@ namespace jink::planner::horizon {
 /// 0. O(tracks + points of the paths).
 [[nodiscard]] bool is_valid(const PathRequest& request);
 
+/// Whether a path can be the plan before, of which the request is the continuation: it is at the request's position at
+/// time 0, within 1e-6 m, and does in the `step` s from there what a vehicle at the request's velocity can: it strays
+/// from even motion by no more than twice what the vehicle's acceleration gives, and 0.06 m. (A path's velocity is told
+/// by its positions. A plan's last step may be off by the distance at which it counts as there.)
+[[nodiscard]] bool continues(const base::TimedPath& path, const PathRequest& request, double step);
+
 /// Checks a path among the request's obstacles up to a path time, s; a path that ends before waits at its end.
 [[nodiscard]] verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until);
 

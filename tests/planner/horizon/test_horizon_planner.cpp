@@ -11,6 +11,7 @@
 
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/open_loop.hpp"
+#include "planner/horizon/path_check.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -170,6 +171,55 @@ TEST(HorizonPlanner, DropsAPreviousPlanThatIsClearlyWorse) {
   EXPECT_LT(base::path_length(plan.path), 20.2);
 }
 
+// What begins elsewhere, at another velocity or later is not what is flown now: kept, it would be a jump.
+TEST(HorizonPlanner, RefusesAPreviousPlanThatDoesNotBeginInTheRequestsState) {
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest r = request(tracks);
+  const verify::Plan first = plan_once(r);
+  const verify::Plan afresh = plan_once(r, 2, {}, 2);
+  ASSERT_TRUE(plan_once(r, 2, first.path, 2).kept_previous);
+  const auto expect_refused = [&](const base::TimedPath& previous, const char* what) {
+    SCOPED_TRACE(what);
+    const verify::Plan plan = plan_once(r, 2, previous, 2);
+    EXPECT_FALSE(plan.kept_previous);
+    expect_same_path(plan.path, afresh.path);  // nor does it seed the search
+  };
+  base::TimedPath beside = first.path;
+  for (base::TimedPoint& point : beside) point.position.y() += 1e-3;
+  expect_refused(beside, "1 mm beside");
+  base::TimedPath late = first.path;
+  for (base::TimedPoint& point : late) point.t += 0.05;
+  expect_refused(late, "begins later");
+  base::TimedPath fast = first.path;
+  for (base::TimedPoint& point : fast) point.t /= 3.0;
+  expect_refused(fast, "three times as fast");
+  base::TimedPath sideways = first.path;
+  sideways[1].position.y() += 0.3;
+  expect_refused(sideways, "to the side at 3 m/s");
+  base::TimedPath not_a_path = first.path;
+  not_a_path.back().t = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(not_a_path, "a time that is none");
+}
+
+// A plan is cut where the vehicle is now, which may be a moment before one of its points or at its very end.
+TEST(HorizonPlanner, KeepsAPreviousPlanWhereverItIsCut) {
+  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+  const PathRequest begun = request(tracks);
+  const verify::Plan first = plan_once(begun);
+  const double end = first.path.back().t;
+  for (const double t : {1e-12, 0.05, 0.1 - 1e-13, 0.1, 0.73, 2.0, 3.999, end - 0.1, end - 0.05, end - 1e-9}) {
+    std::vector<base::Track> now = tracks;
+    for (base::Track& track : now) track = geometry::predict(track, t);
+    PathRequest r = request(now);
+    const base::TimedPoint state = base::sample(first.path, t);
+    r.position = state.position;
+    r.velocity = state.velocity;
+    base::TimedPath previous = base::remainder(first.path, t);
+    for (base::TimedPoint& point : previous) point.t -= t;
+    EXPECT_TRUE(continues(previous, r, base::HorizonSettings{}.step)) << t;
+  }
+}
+
 // Past the wall at less than its uncertainty asks for, but more than the margin; the search, which cannot go so
 // far aside, waits in front of it with all the clearance that anybody asks for.
 TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
@@ -177,6 +227,7 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   std::erase_if(tracks, [](const base::Track& track) { return track.position.y() > 0.0; });
   PathRequest r = request(tracks);
   r.track_acceleration = base::HorizonSettings{}.track_acceleration;
+  r.velocity = {2.5, 0, 0};
   const double aside = 1.0 + r.vehicle.radius + r.margin + 0.02;
   base::TimedPath past;
   for (double x = 0.0; x < 20.0; x += 0.2) {
