@@ -13,10 +13,11 @@ bool is_limit(double value, double most) {
 
 }  // namespace
 
-// An infinite bound that leaves no room is a mistake, not an unbounded side.
 bool is_valid(const base::Box& volume) {
-  return (volume.min.array() <= volume.max.array()).all() && (volume.min.array() < base::kInfinity).all() &&
-         (volume.max.array() > -base::kInfinity).all();
+  const auto low = volume.min.array();
+  const auto high = volume.max.array();
+  return (low <= high).all() && (low == -base::kInfinity || low.abs() <= kFarthest).all() &&
+         (high == base::kInfinity || high.abs() <= kFarthest).all();
 }
 
 bool is_valid(const base::VehicleLimits& vehicle) {
@@ -25,12 +26,6 @@ bool is_valid(const base::VehicleLimits& vehicle) {
          is_limit(vehicle.cruise_speed, kFastest) && is_limit(vehicle.max_climb, kFastest) &&
          is_limit(vehicle.max_acceleration, kHardest) && is_limit(vehicle.max_jerk, kFarthest) &&
          is_amount(vehicle.drag) && is_amount(vehicle.damping);
-}
-
-bool is_valid(const base::Track& track) {
-  return is_within(track.position, kFarthest) && is_within(track.velocity, kFastest) &&
-         is_within(track.acceleration, kHardest) && is_amount(track.radius) && is_amount(track.position_sigma) &&
-         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest);
 }
 
 bool is_valid(const KnownPath& path) {

@@ -25,12 +25,16 @@ inline constexpr double kLongest = 1e10;  ///< s, from a clock's 0, which may be
   return vector.squaredNorm() <= most * most;
 }
 
-/// Whether min is nowhere above max; either may be infinite, so that there is no bound.
+/// Whether min is nowhere above max; a side without a bound is infinite.
 [[nodiscard]] bool is_valid(const base::Box& volume);
 /// Whether radius, drag and damping are not below 0, and all else above it.
 [[nodiscard]] bool is_valid(const base::VehicleLimits& vehicle);
 /// Whether it is a body that moves: radius, standard deviations and age not below 0.
-[[nodiscard]] bool is_valid(const base::Track& track);
+[[nodiscard]] inline bool is_valid(const base::Track& track) {
+  return is_within(track.position, kFarthest) && is_within(track.velocity, kFastest) &&
+         is_within(track.acceleration, kHardest) && is_amount(track.radius) && is_amount(track.position_sigma) &&
+         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest);
+}
 /// Whether it is a path, and its radius, margin, standard deviations and age are not below 0. O(points).
 [[nodiscard]] bool is_valid(const KnownPath& path);
 /// Whether it holds a point and its times increase, with no speed between points above kFastest. Of the points times

@@ -122,10 +122,11 @@ double believed(const base::Track& track, const VerifierInput& input) {
 
 /// Whether the track stays, while it is looked at, where its distances can be told. Without a root: there are many.
 bool stays_near(const base::Track& track, const VerifierInput& input, double time) {
-  const double accelerated = std::min(time, believed(track, input));
-  const double speed = track.velocity.lpNorm<1>() + accelerated * track.acceleration.lpNorm<1>();
-  return track.position.lpNorm<1>() + time * speed <= geometry::kFarthest &&
-         geometry::is_within(track.velocity + accelerated * track.acceleration, geometry::kFastest);
+  const double left = believed(track, input);
+  const double accelerated = left < time ? left : time;
+  const Vec3 speed = track.velocity.cwiseAbs() + accelerated * track.acceleration.cwiseAbs();
+  return (track.position.cwiseAbs() + time * speed).sum() <= geometry::kFarthest &&
+         geometry::is_within(speed, geometry::kFastest);
 }
 
 /// Whether the instants of the path's points, from `tracks_time` on, are told finely enough for its speed.
@@ -140,13 +141,13 @@ bool is_on_time(const geometry::KnownPath& path, const VerifierInput& input) {
 bool can_judge(const VerifierInput& input) {
   if (!geometry::is_valid_path(input.path) || !geometry::is_amount(input.vehicle_radius) ||
       !(std::abs(input.tracks_time) <= geometry::kLongest) || std::isnan(input.until) ||
-      !geometry::is_valid_world(input.volume, input.tracks, input.known, input.acceleration_trust)) {
+      !geometry::is_valid_world(input.volume, {}, input.known, input.acceleration_trust)) {
     return false;
   }
   const double last = std::min(input.path.back().t, input.until);
   const double time = std::max(std::abs(last - input.tracks_time), std::abs(input.path.front().t - input.tracks_time));
   return std::all_of(input.tracks.begin(), input.tracks.end(),
-                     [&](const base::Track& track) { return stays_near(track, input, time); }) &&
+                     [&](const base::Track& t) { return geometry::is_valid(t) && stays_near(t, input, time); }) &&
          std::all_of(input.known.begin(), input.known.end(),
                      [&](const geometry::KnownPath& path) { return is_on_time(path, input); });
 }

@@ -11,6 +11,10 @@
 #include "planner/base/random.hpp"
 #include "planner/verify/verifier.hpp"
 
+// What is promoted to long double here is meant to be.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 namespace jink::planner::verify {
 namespace {
 
@@ -179,3 +183,5 @@ TEST(Verifier, IsAsAccurateAsItSays) {
 
 }  // namespace
 }  // namespace jink::planner::verify
+
+#pragma GCC diagnostic pop
