@@ -24,7 +24,7 @@ using namespace jink::planner;
 using fuzz::require;
 using Real = long double;
 
-// Whether the limits of the vehicle are held along the path is looked at.
+// Whether the vehicle's limits are looked at. Not yet: a plan's last step may take it 0.05 m farther than they allow.
 constexpr bool kHoldsLimits = false;
 
 constexpr Real kClearance = 1e-7L;  // m, that the verifier may be off
@@ -155,16 +155,37 @@ void make_absurd(Numbers& n, Case& c) {
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
   base::TimedPoint& point = path.points[n.below(path.points.size())];
   const auto axis = static_cast<Eigen::Index>(n.below(3));
-  const std::array<double*, 28> fields{
-      &r.position[axis],       &r.velocity[axis],          &r.target[axis],       &r.volume.min[axis],
-      &r.volume.max[axis],     &r.vehicle.radius,          &r.vehicle.max_speed,  &r.vehicle.cruise_speed,
-      &r.vehicle.max_climb,    &r.vehicle.max_acceleration, &r.margin,            &r.track_acceleration,
-      &r.acceleration_trust,   &track.position[axis],      &track.velocity[axis], &track.acceleration[axis],
-      &track.radius,           &track.position_sigma,      &track.velocity_sigma, &track.age,
-      &point.position[axis],   &point.t,                   &path.offset,          &path.radius,
-      &path.margin,            &path.position_sigma,       &path.age,             &path.until};
-  const std::array<double, 16> values{kNaN, base::kInfinity, -base::kInfinity, 1e308, -1e308, 1e200, 1e160, -1e160,
-                                      1e15, -1e15,           1e9,              -1e6,  1e5,    -1.0,  0.0,   5e-324};
+  const std::array<double*, 28> fields{&r.position[axis],
+                                       &r.velocity[axis],
+                                       &r.target[axis],
+                                       &r.volume.min[axis],
+                                       &r.volume.max[axis],
+                                       &r.vehicle.radius,
+                                       &r.vehicle.max_speed,
+                                       &r.vehicle.cruise_speed,
+                                       &r.vehicle.max_climb,
+                                       &r.vehicle.max_acceleration,
+                                       &r.margin,
+                                       &r.track_acceleration,
+                                       &r.acceleration_trust,
+                                       &track.position[axis],
+                                       &track.velocity[axis],
+                                       &track.acceleration[axis],
+                                       &track.radius,
+                                       &track.position_sigma,
+                                       &track.velocity_sigma,
+                                       &track.age,
+                                       &point.position[axis],
+                                       &point.t,
+                                       &path.offset,
+                                       &path.radius,
+                                       &path.margin,
+                                       &path.position_sigma,
+                                       &path.age,
+                                       &path.until};
+  const std::array<double, 16> values{
+      kNaN, base::kInfinity, -base::kInfinity, 1e308, -1e308, 1e200, 1e160, -1e160, 1e15, -1e15, 1e9, -1e6, 1e5, -1.0,
+      0.0,  5e-324};
   double& field = *fields[n.below(fields.size())];
   field = values[n.below(values.size())];
   c.absurd = true;
@@ -193,7 +214,7 @@ Case any_case(Numbers& n) {
   r.acceleration_trust = n.one_in(4) ? base::kInfinity : n.in(0.0, 2.0);
   r.stuck = n.one_in(8);
   r.visit = n.one_in(8);
-  const std::size_t tracks = n.below(6);
+  const std::size_t tracks = n.below(9);
   for (std::size_t i = 0; i < tracks; ++i) c.tracks.push_back(any_track(n, r, i));
   const std::size_t paths = n.one_in(2) ? n.below(3) : 0;
   for (std::size_t i = 0; i < paths; ++i) c.paths.push_back(any_path(n, r, 100 + i));
@@ -338,7 +359,9 @@ void check_limits(const Case& c, const base::TimedPath& path) {
     require(v.length() <= most, "a plan beyond the speed");
     require(std::abs(v.z) <= climb, "a plan beyond the climb");
     if (i == 1) continue;
-    const Real between = (Real{path[i].t} - Real{path[i - 2].t}) / 2;
+    // A plan before is cut within its first segment, whose velocity is that of the whole one.
+    const Real whole = i == 2 ? Real{path[2].t} - Real{path[1].t} : 0;
+    const Real between = std::max(whole, (Real{path[i].t} - Real{path[i - 2].t}) / 2);
     const Real change = (v - vehicle.velocity(i - 1)).length();
     require(change <= between * limits.max_acceleration * (1 + 1e-6L) + rounding, "a plan beyond the acceleration");
   }
@@ -389,7 +412,9 @@ verify::Plan make_plan(const Case& c, base::WorkerPool& pool) {
 }
 
 bool same_bits(const verify::Plan& a, const verify::Plan& b) {
-  const auto same = [](const Vec3& p, const Vec3& q) { return std::memcmp(p.data(), q.data(), 3 * sizeof(double)) == 0; };
+  const auto same = [](const Vec3& p, const Vec3& q) {
+    return std::memcmp(p.data(), q.data(), 3 * sizeof(double)) == 0;
+  };
   return a.status == b.status && a.kept_previous == b.kept_previous &&
          std::equal(a.path.begin(), a.path.end(), b.path.begin(), b.path.end(),
                     [&](const base::TimedPoint& p, const base::TimedPoint& q) {
