@@ -112,6 +112,43 @@ Real reference(const Case& c) {
   return best - c.track.radius - c.radius;
 }
 
+/// Coordinate k of a path at an instant; `offset` of its own clock is 0.
+Real place(const base::TimedPath& path, double offset, Real t, Eigen::Index k) {
+  const auto instant = [&](const base::TimedPoint& point) { return Real{point.t} - offset; };
+  if (t <= instant(path.front())) return path.front().position[k];
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const base::TimedPoint& a = path[i - 1];
+    const base::TimedPoint& b = path[i];
+    const Real share = (t - instant(a)) / (instant(b) - instant(a));
+    if (share <= 1) return a.position[k] + share * (Real{b.position[k]} - a.position[k]);
+  }
+  return path.back().position[k];
+}
+
+/// Between two instants at which one of them turns both move evenly.
+Real reference(const base::TimedPath& path, const geometry::KnownPath& known, double radius) {
+  std::vector<Real> instants;
+  for (const base::TimedPoint& point : path) instants.push_back(point.t);
+  for (const base::TimedPoint& point : known.points) {
+    const Real t = Real{point.t} - known.offset;
+    if (t > path.front().t && t < path.back().t) instants.push_back(t);
+  }
+  std::sort(instants.begin(), instants.end());
+  Real best = base::kInfinity;
+  for (std::size_t i = 1; i < instants.size(); ++i) {
+    const Real duration = instants[i] - instants[i - 1];
+    if (duration <= 0) continue;
+    std::array<Coordinate, 3> relative{};
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const auto apart = [&](Real t) { return place(path, 0.0, t, k) - place(known.points, known.offset, t, k); };
+      const Real first = apart(instants[i - 1]);
+      relative[static_cast<std::size_t>(k)] = {first, (apart(instants[i]) - first) / duration, 0};
+    }
+    best = std::min(best, least_distance(relative, duration));
+  }
+  return best - known.radius - radius;
+}
+
 /// How large the numbers of a case are, m, m/s, m/s², s.
 struct Scale {
   const char* name;
@@ -178,6 +215,38 @@ TEST(Verifier, IsAsAccurateAsItSays) {
     const double worst = worst_error(scale, kCases);
     EXPECT_LE(worst, kAccuracy) << scale.name;
     EXPECT_GT(worst, kAccuracy / 1000.0) << scale.name;  // the statement is not far from what is
+  }
+}
+
+// Around a place 1 km away, on a clock that counts from 1970, or one far away.
+TEST(Verifier, IsAsAccurateOfKnownPathsAsItSays) {
+  for (const double from : {0.0, 1.7e9}) {
+    for (const double away : {1e3, 5e7}) {
+      double worst = 0.0;
+      for (std::uint64_t seed = 0; seed < 10000; ++seed) {
+        base::RandomStream random(seed);
+        const auto walk = [&](double begin) {
+          base::TimedPath path;
+          Vec3 position(random.uniform(-3.0, 3.0), away + random.uniform(-3.0, 3.0), -away);
+          const std::size_t points = 2 + random.below(8);
+          for (std::size_t i = 0; i < points; ++i) {
+            path.push_back({begin, position, Vec3::Zero(), Vec3::Zero()});
+            begin += random.uniform(0.05, 1.0);
+            position += Vec3(random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0));
+          }
+          return path;
+        };
+        const base::TimedPath path = walk(random.uniform(0.0, 300.0));
+        geometry::KnownPath known;
+        known.offset = from;
+        known.points = walk(from + path.front().t + random.uniform(-2.0, 2.0));
+        known.radius = 0.5;
+        const Verification v = verify({path, {}, 0.0, 0.3, {}, base::kInfinity, base::kInfinity, {&known, 1}});
+        ASSERT_TRUE(v.valid);
+        worst = std::max(worst, static_cast<double>(std::abs(v.min_clearance - reference(path, known, 0.3))));
+      }
+      EXPECT_LE(worst, away > 1e4 ? kAccuracy : kUsualAccuracy) << from << " s, " << away << " m";
+    }
   }
 }
 
