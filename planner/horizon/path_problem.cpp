@@ -15,7 +15,9 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLongestTail = 600.0;  // s, of straight flight after the horizon
+constexpr double kLongestTail = 600.0;   // s, of straight flight after the horizon
+constexpr double kLongestLanding = 2.0;  // s, in which what has settled within the horizon comes to rest
+constexpr int kLatestLanding = 3;        // steps after it has come near
 
 std::size_t index(int i) {
   return static_cast<std::size_t>(i);
@@ -82,7 +84,7 @@ void PathProblem::unobstructed_flight() {
   scene_.unobstructed[0] = frame.origin;
   for (int step = 1; step <= scene_.steps; ++step) {
     const double left = frame.length - distance;
-    const double wish = std::min({cruise, std::sqrt(2.0 * settings_.braking * left), left / kCatchUp});
+    const double wish = std::min({cruise, std::sqrt(2.0 * braking() * left), left / kCatchUp});
     const double next = std::clamp(wish, speed - change, speed + change);
     distance = std::min(frame.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
@@ -199,34 +201,74 @@ base::TimedPath PathProblem::motion(std::span<const double> x) const {
       path.push_back({(n + 1) * settings_.step, flight.position.lane(0), velocity, Vec3::Zero()});
     }
   }
-  fly_to_target(path, path.back());
+  fly_to_target(path);
   return path;
 }
 
-// Straight on to the target and to rest there; a path that has settled at the target already ends where it arrived.
-void PathProblem::fly_to_target(base::TimedPath& path, base::TimedPoint flight) const {
-  const double stoppable = 1.0 / scene_.follower.inverse_change;  // speed that one step takes away
-  const auto arrived = [&](std::size_t i) {
-    return (path[i].position - request_.target).norm() <= kArrival && path[i - 1].velocity.norm() <= stoppable;
-  };
-  for (double tail = 0.0; !arrived(path.size() - 1) && tail < kLongestTail; tail += settings_.step) {
-    const Vec3 way = request_.target - flight.position;
-    const double distance = way.norm();
-    const double speed =
-        std::min({request_.vehicle.cruise_speed, std::sqrt(2.0 * settings_.braking * distance), distance / kCatchUp});
-    const Vec3 wish = distance > 0.0 ? Vec3(way * (speed / distance)) : Vec3::Zero();
-    Vec3& p = flight.position;
-    Vec3& v = flight.velocity;
-    scene_.follower.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wish.x(), wish.y(), wish.z());
-    path.back().acceleration = (v - path.back().velocity) / settings_.step;
-    path.push_back({path.back().t + settings_.step, p, v, Vec3::Zero()});
+// A path that has settled near the target within the horizon ends when it came there, on the target: it lands from
+// where it was shortly before, of all such landings by the one that asks for the least, if that is never farther than
+// kArrival from the path. Else, or where there is none, straight on from where the path ends.
+void PathProblem::fly_to_target(base::TimedPath& path) const {
+  const base::VehicleLimits& vehicle = request_.vehicle;
+  const double change = 1.0 / scene_.follower.inverse_change;  // of the velocity, in a step
+  const Approach approach(
+      request_.target, {settings_.step, vehicle.cruise_speed, vehicle.max_climb, change, braking() * settings_.step});
+  if (const std::size_t settled = settled_from(path); settled < path.size()) {
+    path.resize(settled + 1);
+    if (land_at_end(approach, path)) return;
   }
-  if (!arrived(path.size() - 1)) return;
-  while (path.size() > 2 && arrived(path.size() - 2)) path.pop_back();
-  path[path.size() - 2].acceleration = -path[path.size() - 2].velocity / settings_.step;
-  path.back().position = request_.target;
-  path.back().velocity.setZero();
+  const int longest = static_cast<int>(std::min(kLongestTail / settings_.step, 1e6));
+  for (int steps = 0; steps < longest; ++steps) {
+    const base::TimedPoint now = path.back();
+    if (now.position == request_.target && now.velocity.isZero(0.0)) break;
+    if (const std::optional<Landing> landing = approach.landing(now); landing && steps + landing->braking < longest) {
+      approach.fly(*landing, path);
+      break;
+    }
+    const Vec3 wish = approach.wished_velocity(now);
+    Vec3 p = now.position;
+    Vec3 v = now.velocity;
+    scene_.follower.advance(p.x(), p.y(), p.z(), v.x(), v.y(), v.z(), wish.x(), wish.y(), wish.z());
+    path.back().acceleration = (v - now.velocity) / settings_.step;
+    path.push_back({now.t + settings_.step, p, v, Vec3::Zero()});
+  }
   path.back().acceleration.setZero();
+}
+
+// The first point from which on all are at the target, slow enough to stop; past the end where the last one is not.
+std::size_t PathProblem::settled_from(const base::TimedPath& path) const {
+  const double stoppable = 1.0 / scene_.follower.inverse_change;  // speed that one step takes away
+  const auto settled = [&](const base::TimedPoint& point) {
+    return (point.position - request_.target).norm() <= kArrival && point.velocity.norm() <= stoppable;
+  };
+  std::size_t first = path.size();
+  while (first > 1 && settled(path[first - 1])) --first;
+  return first;
+}
+
+// Lands where the path ends, or as few steps later as there is a landing.
+bool PathProblem::land_at_end(const Approach& approach, base::TimedPath& path) const {
+  const int end = static_cast<int>(path.size()) - 1;
+  const int longest = static_cast<int>(kLongestLanding / settings_.step);
+  for (int late = 0; late <= kLatestLanding; ++late) {
+    std::optional<Landing> best;
+    for (int steps = std::max(2, late); steps <= std::min(end + late, longest); ++steps) {
+      const std::size_t first = index(end + late - steps);
+      const std::optional<Landing> landing = approach.landing_in(path[first], steps);
+      if (!landing || (best && best->change <= landing->change)) continue;
+      bool near = true;
+      for (std::size_t i = first + 1; i < path.size() && near; ++i) {
+        const Vec3 landed = approach.after(*landing, path[first], static_cast<int>(i - first)).position;
+        near = (landed - path[i].position).norm() <= kArrival;
+      }
+      if (near) best = landing;
+    }
+    if (!best) continue;
+    path.resize(index(end + late - best->braking));
+    approach.fly(*best, path);
+    return true;
+  }
+  return false;
 }
 
 optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {

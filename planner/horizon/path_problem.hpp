@@ -2,6 +2,7 @@
 // The remaining path at once: K waypoints, each a place and a time, and the motion that follows from them.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "planner/base/trajectory.hpp"
 #include "planner/base/types.hpp"
 #include "planner/geometry/known_path.hpp"
+#include "planner/horizon/approach.hpp"
 #include "planner/horizon/nearby_obstacles.hpp"
 #include "planner/horizon/path_scene.hpp"
 #include "planner/optimizer/problem.hpp"
@@ -63,8 +65,13 @@ class PathProblem final : public optimizer::Problem {
   /// Several solutions are evaluated in lockstep; each gets the same bits as alone.
   void evaluate(std::span<const double> x, std::span<optimizer::Cost> costs) const override;
 
-  /// The motion of one solution, on to the target and at rest there: one point for each step. What evaluate() measures
-  /// is this motion's first part, to the bit.
+  /// The motion of one solution, on to the target and at rest there: one point for each step. In each step the
+  /// acceleration is constant. Speed, climb and planned acceleration keep their limits to the last step; speed and
+  /// climb that the request is above are not exceeded. It ends on the target to the bit, unless that takes minutes.
+  ///
+  /// What evaluate() measures is this motion's first part, to the bit. Only where the measured one comes within
+  /// kArrival (0.05 m) of the target to stay, within the horizon, does this one end: in the two seconds before, it
+  /// leaves it by at most that, and rests on the target then or a few steps later.
   [[nodiscard]] base::TimedPath motion(std::span<const double> x) const;
   /// Objectives and violation of any path that starts at time 0, measured like those of a solution. It may be where no
   /// solution can be. O(tracks + near tracks · steps), allocates.
@@ -73,6 +80,8 @@ class PathProblem final : public optimizer::Problem {
   /// Variables whose waypoints lie on a path, as near as the box allows: the warm start.
   void encode_path(const base::TimedPath& path, std::span<double> x) const;
 
+  /// Between points of a motion, s.
+  [[nodiscard]] double step() const { return settings_.step; }
   /// Steps in the horizon.
   [[nodiscard]] int steps() const { return scene_.steps; }
   /// How far the problem looks ahead, s.
@@ -83,14 +92,19 @@ class PathProblem final : public optimizer::Problem {
  private:
   static constexpr int kMaxSteps = 256;
   static constexpr double kHurry = 4.0;
+  static constexpr double kBrakingShare = 0.9;  // of the planned acceleration: the rest makes up for whole steps
 
   [[nodiscard]] double most_acceleration() const {
     return settings_.planned_acceleration(request_.vehicle.max_acceleration);
   }
+  /// Planned towards a stop, m/s²: what the vehicle can follow.
+  [[nodiscard]] double braking() const { return std::min(settings_.braking, kBrakingShare * most_acceleration()); }
   void unobstructed_flight();
   void predict_obstacles();
   [[nodiscard]] Clearance clearance() const;
-  void fly_to_target(base::TimedPath& path, base::TimedPoint flight) const;
+  void fly_to_target(base::TimedPath& path) const;
+  [[nodiscard]] std::size_t settled_from(const base::TimedPath& path) const;
+  bool land_at_end(const Approach& approach, base::TimedPath& path) const;
   template <std::size_t kLanes>
   void evaluate_lanes(const double* x, std::span<optimizer::Cost> costs) const;
   void evaluate_twelve(const double* x, std::span<optimizer::Cost> costs) const;

@@ -32,7 +32,6 @@ using planner::verify::Plan;
 using planner::verify::PlanStatus;
 
 constexpr double kPatience = 30.0;  // s, twice what most need; a world without a flight is planned to the end
-constexpr double kSnap = 0.05;      // m, from the target, where a path may end and be called there
 
 /// The world that a planner is asked about: what a perfect sensor tells at t = 0 of each obstacle, its enclosing sphere
 /// with position, velocity and acceleration, is true for ever.
@@ -87,8 +86,7 @@ void expect_flyable(const config::Scenario& scenario, const planner::base::Timed
     ASSERT_GT(duration, 0.0) << path[i].t;
     EXPECT_LE((path[i].velocity - path[i - 1].velocity).norm(), most * duration + 1e-6) << path[i].t;
     const Vec3 evenly = path[i - 1].position + duration * path[i - 1].velocity;
-    const double off = 0.5 * most * duration * duration + (i + 1 < path.size() ? 1e-6 : kSnap);
-    EXPECT_LE((path[i].position - evenly).norm(), off) << path[i].t;
+    EXPECT_LE((path[i].position - evenly).norm(), 0.5 * most * duration * duration + 1e-6) << path[i].t;
   }
 }
 

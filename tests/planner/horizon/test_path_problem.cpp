@@ -184,8 +184,7 @@ TEST(PathProblem, StartsInTheRequestsState) {
 }
 
 // The limits are those of VehicleLimits, the acceleration acceleration_share of it or of acceleration_limit, whichever
-// is less. The last step, in which a path
-// within 5 cm of the target is put on it, is not counted.
+// is less.
 TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
   const base::HorizonSettings settings;
   PathProblem problem{settings};
@@ -202,7 +201,6 @@ TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
       const Vec3 moved = (path[i].position - path[i - 1].position) / settings.step;
       ASSERT_LE(moved.norm(), r.vehicle.max_speed + 1e-9);
       ASSERT_LE(std::abs(moved.z()), r.vehicle.max_climb + 1e-9);
-      if (i + 1 == path.size()) continue;
       ASSERT_LE(path[i].velocity.norm(), r.vehicle.max_speed + 1e-9);
       ASSERT_LE(std::abs(path[i].velocity.z()), r.vehicle.max_climb + 1e-9);
       const Vec3 change = (path[i].velocity - path[i - 1].velocity) / settings.step;
@@ -211,6 +209,85 @@ TEST(PathProblem, MotionIsFlyableWhateverTheVariables) {
       ASSERT_LT((change - path[i - 1].acceleration).norm(), 1e-6);
       ASSERT_LT((moved - 0.5 * (path[i].velocity + path[i - 1].velocity)).norm(), 1e-9);
     }
+  }
+}
+
+/// Vehicles from slow to fast and from lame to agile, all directions, targets from a hair's breadth to far away.
+struct AnyVehicle {
+  base::HorizonSettings settings;
+  PathRequest request;
+};
+
+double spread(base::RandomStream& random, double low, double high) {
+  return low * std::pow(high / low, random.uniform(0.0, 1.0));
+}
+
+AnyVehicle any_vehicle(std::uint64_t seed) {
+  base::RandomStream random(seed);
+  AnyVehicle any;
+  constexpr std::array kSteps = {0.1, 0.02, 0.05, 0.2, 0.5};
+  any.settings.step = kSteps[random.below(kSteps.size())];
+  any.settings.time = std::min(6.0, 250.0 * any.settings.step);
+  if (random.below(3) == 0) any.settings = any.settings.for_emergencies();
+  if (random.below(10) == 0) any.settings.acceleration_share = 1.0;
+  PathRequest& r = any.request;
+  r.vehicle.max_speed = spread(random, 0.1, 20.0);
+  r.vehicle.cruise_speed = random.uniform(0.3, 1.0) * r.vehicle.max_speed;
+  r.vehicle.max_acceleration = spread(random, 0.5, 30.0);
+  r.vehicle.max_climb = std::min(spread(random, 0.1, 5.0), r.vehicle.max_speed);
+  r.position = {0, 0, 2};
+  // As far as is flown in three minutes, up and down too.
+  const double far =
+      random.below(20) == 0 ? 0.0 : spread(random, 1e-4, 1.0) * std::min(200.0, 40.0 * r.vehicle.max_speed);
+  r.target = r.position + random_vector(random, far);
+  r.target.z() = std::clamp(r.target.z(), 2.0 - 100.0 * r.vehicle.max_climb, 2.0 + 100.0 * r.vehicle.max_climb);
+  if (random.below(3) != 0) r.velocity = random_vector(random, r.vehicle.max_speed / std::sqrt(3.0));
+  r.velocity.z() = std::clamp(r.velocity.z(), -r.vehicle.max_climb, r.vehicle.max_climb);
+  if (random.below(15) == 0) r.velocity *= 2.0;  // blown faster than it flies
+  return any;
+}
+
+// Speed, climb and planned acceleration in every step, the last ones too, in which it comes to rest on the target; what
+// is above a limit at the start comes down from there.
+TEST(PathProblem, EveryVehicleKeepsItsLimitsToTheTarget) {
+  int settled = 0;
+  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    const auto [settings, r] = any_vehicle(seed);
+    PathProblem problem{settings};
+    problem.prepare(r);
+    base::RandomStream random(seed, 1);
+    const std::vector<double> x = random_variables(random, problem, seed % 3 == 0 ? 0.0 : spread(random, 0.01, 1.0));
+    const base::TimedPath path = problem.motion(x);
+    ASSERT_EQ(path.back().position, r.target) << seed;
+    ASSERT_EQ(path.back().velocity, Vec3(0, 0, 0)) << seed;
+    const double speed = std::max(r.vehicle.max_speed, r.velocity.norm());
+    const double climb = std::max(r.vehicle.max_climb, std::abs(r.velocity.z()));
+    const double acceleration = settings.planned_acceleration(r.vehicle.max_acceleration);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const double duration = path[i].t - path[i - 1].t;
+      ASSERT_NEAR(duration, settings.step, 1e-9) << seed;
+      const Vec3 moved = (path[i].position - path[i - 1].position) / duration;
+      ASSERT_LE(moved.norm(), speed * (1.0 + 1e-9)) << seed << ", " << path[i].t;
+      ASSERT_LE(std::abs(moved.z()), climb * (1.0 + 1e-9)) << seed << ", " << path[i].t;
+      const Vec3 change = path[i].velocity - path[i - 1].velocity;
+      ASSERT_LE(change.norm(), acceleration * duration * (1.0 + 1e-9)) << seed << ", " << path[i].t;
+      ASSERT_LT((change - settings.step * path[i - 1].acceleration).norm(), 1e-9) << seed << ", " << path[i].t;
+      ASSERT_LT((moved - 0.5 * (path[i].velocity + path[i - 1].velocity)).norm(), 1e-8) << seed << ", " << path[i].t;
+    }
+    settled += path.back().t <= problem.horizon() ? 1 : 0;
+  }
+  EXPECT_GT(settled, 400);
+  EXPECT_LT(settled, 3600);
+}
+
+// Where the vehicle is what it usually is, it is at the target as soon as it can be: half a second of acceleration at
+// most, and braking at 2 m/s², cost it 0.25 s and 0.75 s more than cruise speed all the way.
+TEST(PathProblem, ComesToRestWithoutDelay) {
+  PathProblem problem{base::HorizonSettings{}};
+  for (const double distance : {4.0, 7.0, 10.0, 14.0, 17.0, 20.0, 33.0, 40.0}) {
+    const PathRequest r = request({distance, 0, 2});
+    problem.prepare(r);
+    EXPECT_LT(problem.motion(zeros(problem)).back().t, distance / 3.0 + 0.5 + 0.75 + 0.15) << distance;
   }
 }
 
