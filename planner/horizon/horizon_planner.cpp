@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
 constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
-constexpr double kSeedClearance = 0.2;     // m, that initial_paths aim for beyond the margin: the vehicle cuts corners
+constexpr double kKept = 1.1;  // of the limits, up to which a previous plan counts: who is beside it is led back to it
+constexpr double kSeedClearance = 0.2;  // m, that initial_paths aim for beyond the margin: the vehicle cuts corners
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
@@ -35,19 +36,20 @@ base::TimedPath unobstructed(const PathProblem& problem) {
 }
 
 /// What a verified horizon and the whole path's check amount to.
-void conclude(const PathRequest& request, double horizon, verify::Plan& plan) {
+void conclude(const PathRequest& request, const PathProblem& problem, verify::Plan& plan) {
+  plan.verification.limits = use_of_limits(plan.path, request, problem.step());
   if (!plan.verification.free()) {
     plan.status = verify::PlanStatus::kBlocked;
     return;
   }
   plan.status = verify::PlanStatus::kProgresses;
-  const bool arrives = (plan.path.back().position - request.target).norm() < 1e-6;
-  if (!arrives) return;
-  if (plan.path.back().t <= horizon) {
+  if (!arrives(plan.path, request) || !plan.verification.limits.within()) return;
+  if (plan.path.back().t <= problem.horizon()) {
     plan.status = verify::PlanStatus::kReaches;
     return;
   }
-  const verify::Verification whole = verify_until(plan.path, request, base::kInfinity);
+  verify::Verification whole = verify_until(plan.path, request, base::kInfinity);
+  whole.limits = plan.verification.limits;
   if (whole.free()) {
     plan.status = verify::PlanStatus::kReaches;
     plan.verification = whole;
@@ -123,7 +125,7 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
     }
   }
   plan.searches = searches;
-  conclude(request, problem_.horizon(), plan);
+  conclude(request, problem_, plan);
   return plan;
 }
 
@@ -144,8 +146,8 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& re
   const auto settle = [&](verify::Plan& settled) {
     settled.verification = verify_until(settled.path, request, problem_.horizon());
     if (!settled.verification.free() || settled.verification.min_clearance < request.margin) return false;
-    conclude(request, problem_.horizon(), settled);
-    return true;
+    conclude(request, problem_, settled);
+    return settled.verification.limits.within(kKept);
   };
   if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
   if (previous.empty()) return std::nullopt;
@@ -233,12 +235,14 @@ void HorizonPlanner::keep_previous(const PathRequest& request, const base::Timed
   verify::Plan old;
   old.path = base::remainder(previous, 0.0);
   old.verification = verify_until(old.path, request, problem_.horizon());
+  old.verification.limits = use_of_limits(old.path, request, problem_.step());
   bool keep = false;
   if (old_cost.violation == 0.0 && old.verification.free()) {
     const double slack = settings_.keep_ratio;
-    keep = new_cost.violation > 0.0 || !plan.verification.free() ||
-           new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
-           (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
+    const bool no_worse =
+        new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
+        (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
+    keep = new_cost.violation > 0.0 || !plan.verification.free() || (no_worse && old.verification.limits.within(kKept));
   } else if (new_cost.violation > 0.0 || !plan.verification.free()) {
     keep = is_safer(old.verification, plan.verification);
   }

@@ -36,7 +36,8 @@ class HorizonPlanner {
 
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
   /// empty: none, as one that does not begin in the request's state (continues() in path_check.hpp). It seeds the
-  /// search, and it is kept where it is still free and a new plan is not clearly better.
+  /// search, and it is kept where it is still free and a new plan is not clearly better; where it asks for more than 1.1
+  /// times the vehicle's limits, only if no new plan is free.
   /// `number` counts the plans of a flight and names the random stream.
   ///
   /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it

@@ -22,13 +22,18 @@ base::HorizonSettings for_shortest(base::HorizonSettings settings) {
   return settings;
 }
 
-bool arrives(const base::TimedPath& path, const OpenLoopRequest& request) {
-  return (path.back().position - request.path.target).norm() < 1e-6;
+verify::Verification verify_whole(const base::TimedPath& path, const OpenLoopRequest& request, double step) {
+  verify::Verification whole = verify_until(path, request.path, base::kInfinity);
+  whole.limits = use_of_limits(path, request.path, step);
+  return whole;
 }
 
-verify::Verification verify_whole(const base::TimedPath& path, const OpenLoopRequest& request) {
-  return verify::verify({path, request.path.tracks, 0.0, request.path.vehicle.radius, request.path.volume,
-                         request.path.acceleration_trust, base::kInfinity, request.path.paths});
+/// When the path is at its last point by then, or at its first after time 0: between points the vehicle is not where
+/// the motion with its velocity is, and a plan from there would begin with a jolt.
+double at_a_point(const base::TimedPath& path, double wanted) {
+  double t = path.back().t;
+  for (std::size_t i = path.size(); i-- > 1 && t > wanted + kJoint;) t = path[i].t;
+  return t;
 }
 
 /// Adds the first `keep` seconds of a part, which starts at time `t`, to the whole.
@@ -73,7 +78,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     double wanted = std::min(request.commit, end);
     if (part.status == verify::PlanStatus::kReaches) wanted = end;
     if (part.status == verify::PlanStatus::kProgresses && budget.expired()) wanted = std::min(planner.horizon(), end);
-    const double keep = std::min(wanted, request.time_limit - t);
+    const double keep = std::min(at_a_point(part.path, wanted), request.time_limit - t);
     append(part.path, t, keep, whole.path);
     t += keep;
     if (keep == end || t + kJoint >= request.time_limit || budget.expired()) break;
@@ -83,10 +88,11 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     previous = base::remainder(part.path, keep);
     for (base::TimedPoint& point : previous) point.t -= keep;
   }
-  whole.verification = verify_whole(whole.path, request);
+  whole.verification = verify_whole(whole.path, request, planner.settings().step);
   whole.status = verify::PlanStatus::kBlocked;
   if (whole.verification.free()) {
-    whole.status = arrives(whole.path, request) ? verify::PlanStatus::kReaches : verify::PlanStatus::kProgresses;
+    const bool reaches = arrives(whole.path, request.path) && whole.verification.flyable();
+    whole.status = reaches ? verify::PlanStatus::kReaches : verify::PlanStatus::kProgresses;
   }
   return whole;
 }
@@ -101,7 +107,7 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
                             request.path.paths)) {
     verify::Plan plan;
     plan.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
-    plan.verification = verify_whole(plan.path, request);
+    plan.verification = verify_whole(plan.path, request, settings.step);
     plan.status = verify::PlanStatus::kStartBlocked;
     return plan;
   }

@@ -17,7 +17,7 @@ namespace jink::planner::horizon {
 struct OpenLoopRequest {
   PathRequest path;         ///< from rest at the start; tracks valid at t = 0
   double time_limit = 0.0;  ///< the path is cut here; not below 0
-  double commit = 0.5;      ///< how much of each plan is kept before planning on; above 0
+  double commit = 0.5;      ///< how much of each plan is kept before planning on: whole steps; above 0
 };
 
 /// One plan after the other along the path itself, the obstacles extrapolated from t = 0. The shortest path is asked
@@ -26,8 +26,9 @@ struct OpenLoopRequest {
 /// `settings` as they are, and the better one returned: the one that arrives, then the one that is free, then the one
 /// that comes nearer. `budget` is that of each plan, its deadline that of all.
 ///
-/// The finished path is verified: kReaches only where all of it is free and it ends at the target within the time
-/// limit, kInvalid and no path for a request that holds what is none. `make` and what is thrown: as for HorizonPlanner.
+/// The finished path is verified: kReaches only where all of it is free and within the vehicle's limits and it ends at
+/// the target within the time limit, kInvalid and no path for a request that holds what is none. `make` and what is
+/// thrown: as for HorizonPlanner.
 verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
                             const OpenLoopRequest& request, std::uint64_t seed, const base::Budget& budget,
                             base::WorkerPool& pool, const optimizer::MakeOptimizer& make = {});

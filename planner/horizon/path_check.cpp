@@ -42,6 +42,16 @@ verify::Verification verify_until(const base::TimedPath& path, const PathRequest
   return check(waiting);
 }
 
+bool arrives(const base::TimedPath& path, const PathRequest& request) {
+  return (path.back().position - request.target).norm() < 1e-6;
+}
+
+verify::LimitsUse use_of_limits(const base::TimedPath& path, const PathRequest& request, double step) {
+  const base::VehicleLimits& vehicle = request.vehicle;
+  return verify::use_of_limits(path, {request.velocity, vehicle.max_speed, vehicle.max_climb, vehicle.max_acceleration,
+                                      step, arrives(path, request)});
+}
+
 bool is_safer(const verify::Verification& a, const verify::Verification& b) {
   if (a.free() != b.free()) return a.free();
   if (a.valid != b.valid) return a.valid;

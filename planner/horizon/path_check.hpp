@@ -21,6 +21,13 @@ namespace jink::planner::horizon {
 /// Checks a path among the request's obstacles up to a path time, s; a path that ends before waits at its end.
 [[nodiscard]] verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until);
 
+/// Whether a path ends at the request's target.
+[[nodiscard]] bool arrives(const base::TimedPath& path, const PathRequest& request);
+
+/// What a path that is planned for the request in steps of `step`, s, uses of the vehicle's limits. One that ends at
+/// the target ends at rest.
+[[nodiscard]] verify::LimitsUse use_of_limits(const base::TimedPath& path, const PathRequest& request, double step);
+
 /// Whether `a` does less harm than `b`: free before not free, then more clearance; else free for longer (by more than
 /// the verifier's accuracy), then the softer contact.
 [[nodiscard]] bool is_safer(const verify::Verification& a, const verify::Verification& b);

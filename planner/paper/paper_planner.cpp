@@ -138,9 +138,12 @@ verify::Plan plan_paper(const PaperRequest& request, optimizer::Optimizer& optim
     plan_steps(request, optimizer, pool, plan);
     append(plan.path, request.target, request.vehicle);
   }
-  plan.verification = verify::verify({plan.path, request.tracks, 0.0, request.vehicle.radius, request.volume});
+  const base::VehicleLimits& vehicle = request.vehicle;
+  const verify::FlightLimits limits{Vec3::Zero(), vehicle.max_speed, vehicle.max_climb};  // of straight pieces
+  plan.verification = verify::verify(
+      {plan.path, request.tracks, 0.0, vehicle.radius, request.volume, base::kInfinity, base::kInfinity, {}, limits});
   if (plan.status != verify::PlanStatus::kStartBlocked) {
-    plan.status = plan.verification.free() ? verify::PlanStatus::kReaches : verify::PlanStatus::kBlocked;
+    plan.status = plan.verification.flyable() ? verify::PlanStatus::kReaches : verify::PlanStatus::kBlocked;
   }
   return plan;
 }

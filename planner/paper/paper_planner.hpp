@@ -33,8 +33,8 @@ base::Axis effective_axis(const PaperRequest& request);
 
 /// Plans the whole path at once. Each step's optimum is chosen from the front by modified TOPSIS with entropy weights
 /// among the solutions that violate nothing, or the least. The finished path is verified in continuous time: the status
-/// is kReaches only for a free one, else kBlocked; kInvalid and no path for a request that
-/// planner/geometry/validity.hpp refuses. The same bits for any number of threads. Throws
+/// is kReaches only for a free one within the limits of speed and climb, else kBlocked; kInvalid and no path for a
+/// request that planner/geometry/validity.hpp refuses. The same bits for any number of threads. Throws
 /// std::invalid_argument for settings that Pmomvo refuses or fewer than two waypoints.
 verify::Plan plan_paper(const PaperRequest& request, base::WorkerPool& pool);
 

@@ -17,7 +17,7 @@ namespace jink::planner::verify {
 
 /// What is known of a plan's path.
 enum class PlanStatus {
-  kReaches,       ///< free, verified, to the target
+  kReaches,       ///< free and within the vehicle's limits, verified, to the target
   kProgresses,    ///< free, verified, for the time looked ahead; beyond that nothing is claimed
   kBlocked,       ///< no free plan was found: the path is the least bad manoeuvre
   kStartBlocked,  ///< the vehicle is inside an obstacle at the start

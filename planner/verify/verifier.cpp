@@ -379,6 +379,7 @@ Verification verify(const VerifierInput& input) {
   PathCheck check(input);
   for (const base::Track& track : input.tracks) check.add(TrackMotion(track, input), result);
   for (const geometry::KnownPath& known : input.known) check.add(KnownMotion(known, input), result);
+  if (input.limits) result.limits = use_of_limits(input.path, *input.limits);
   return result;
 }
 

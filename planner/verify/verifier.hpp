@@ -10,6 +10,7 @@
 #include "planner/base/trajectory.hpp"
 #include "planner/base/types.hpp"
 #include "planner/geometry/known_path.hpp"
+#include "planner/verify/flight_limits.hpp"
 
 namespace jink::planner::verify {
 
@@ -22,9 +23,12 @@ struct Verification {
   double contact_speed = 0.0;              ///< relative speed at the first contact
   bool inside_volume = true;               ///< the path lies in the volume, up to VerifierInput::until
   bool valid = true;                       ///< the input could be judged, see verify()
+  LimitsUse limits;                        ///< of all of the path, where limits were given
 
   /// What could not be judged is not free.
   [[nodiscard]] bool free() const { return valid && !first_contact && inside_volume; }
+  /// Free, and nowhere beyond the limits that were given.
+  [[nodiscard]] bool flyable() const { return free() && limits.within(); }
 };
 
 /// What is checked, and against what. ENU, m, s.
@@ -37,6 +41,7 @@ struct VerifierInput {
   double acceleration_trust = base::kInfinity;   ///< as in predict_position, from the measurement on
   double until = base::kInfinity;                ///< path time up to which obstacles and the volume count
   std::span<const geometry::KnownPath> known{};  ///< offsets and `until` count from `tracks_time`; margins do not count
+  std::optional<FlightLimits> limits{};          ///< that the path must keep; none: not looked at
 };
 
 /// m: what a clearance is off by at most, where it is judged at all. Within 10 km of the origin, 600 s and at up to 1

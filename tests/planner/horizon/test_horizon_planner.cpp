@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "planner/base/random.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/open_loop.hpp"
 #include "planner/horizon/path_check.hpp"
@@ -230,11 +233,14 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   r.velocity = {2.5, 0, 0};
   const double aside = 1.0 + r.vehicle.radius + r.margin + 0.02;
   base::TimedPath past;
-  for (double x = 0.0; x < 20.0; x += 0.2) {
+  for (int i = 0; i < 110; ++i) {  // at 2 m/s, braking at 1 m/s² for the last 2 m
+    const double t = 0.1 * i;
+    const double braking = std::max(0.0, t - 9.0);
+    const double x = 2.0 * t - 0.5 * braking * braking;
     const double share = std::clamp(std::min(x, 16.0 - x) / 6.0, 0.0, 1.0);
-    past.push_back({x / 2.5, {x, aside * share * share * (3.0 - 2.0 * share), 2}, Vec3::Zero(), Vec3::Zero()});
+    past.push_back({t, {x, aside * share * share * (3.0 - 2.0 * share), 2}, Vec3::Zero(), Vec3::Zero()});
   }
-  past.push_back({8.0, r.target, Vec3::Zero(), Vec3::Zero()});
+  past.push_back({11.0, r.target, Vec3::Zero(), Vec3::Zero()});
   ASSERT_GE(check(r, past).min_clearance, r.margin);
   base::HorizonSettings narrow;
   narrow.lateral_range = 0.5;
@@ -378,6 +384,96 @@ TEST(HorizonPlanner, KeepsWithoutASearchWhatNoSearchCouldReplace) {
   expect_same_path(second.path, first.path);
 }
 
+/// What a path that begins in the request's state asks for, of the vehicle's limits.
+verify::LimitsUse use(const PathRequest& r, const base::TimedPath& path) {
+  const base::VehicleLimits& v = r.vehicle;
+  return verify::use_of_limits(path, {r.velocity, v.max_speed, v.max_climb, v.max_acceleration,
+                                      base::HorizonSettings{}.step, path.back().position == r.target});
+}
+
+struct Vehicle {
+  double max_speed, cruise_speed, max_climb, max_acceleration;
+};
+constexpr std::array<Vehicle, 9> kVehicles{{{0.1, 0.1, 0.1, 0.5},
+                                            {0.3, 0.2, 0.1, 1.0},
+                                            {0.5, 0.5, 0.15, 0.5},
+                                            {1.0, 0.7, 0.3, 30.0},
+                                            {3.0, 3.0, 0.15, 1.0},
+                                            {5.0, 3.0, 2.0, 6.0},
+                                            {5.0, 5.0, 5.0, 20.0},
+                                            {12.0, 8.0, 1.5, 2.0},
+                                            {20.0, 15.0, 5.0, 30.0}}};
+
+/// As far as the vehicle comes in some ten seconds, with a sphere on the way.
+PathRequest request_for(const Vehicle& vehicle, std::uint64_t seed, std::vector<base::Track>& tracks) {
+  base::RandomStream random(seed);
+  PathRequest r;
+  r.vehicle.max_speed = vehicle.max_speed;
+  r.vehicle.cruise_speed = vehicle.cruise_speed;
+  r.vehicle.max_climb = vehicle.max_climb;
+  r.vehicle.max_acceleration = vehicle.max_acceleration;
+  r.margin = base::HorizonSettings{}.margin;
+  r.position = {0, 0, 5};
+  const double far = random.uniform(1.0, 12.0) * vehicle.cruise_speed;
+  const double angle = random.uniform(0.0, 6.28);
+  r.target = {far * std::cos(angle), far * std::sin(angle), 5.0 + random.uniform(-6.0, 6.0) * vehicle.max_climb};
+  r.volume = {{-300, -300, -30}, {300, 300, 40}};
+  const double blocked = random.uniform(0.3, 0.8);
+  const Vec3 way = r.target - r.position;
+  tracks = {sphere(1, r.position + blocked * way + Vec3(0, 0, 0.3), Vec3::Zero(), 0.1 + 0.05 * far)};
+  if (random.below(2) == 0) tracks[0].velocity = -0.1 * way;
+  r.tracks = tracks;
+  return r;
+}
+
+// Whatever becomes of a plan in flight, within a step too: what is called reached is within the limits.
+TEST(HorizonPlanner, WhatReachesKeepsTheLimitsOfAnyVehicle) {
+  base::WorkerPool pool(2);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  int reached = 0;
+  int kept = 0;
+  int emergencies = 0;
+  for (std::uint64_t seed = 0; seed < 12 * kVehicles.size(); ++seed) {
+    std::vector<base::Track> tracks;
+    PathRequest r = request_for(kVehicles[seed % kVehicles.size()], seed, tracks);
+    base::TimedPath previous;
+    for (std::uint64_t number = 0; number < 6; ++number) {
+      const verify::Plan plan = planner.plan(r, previous, seed, number, {12}, pool);
+      ASSERT_NE(plan.status, verify::PlanStatus::kInvalid);
+      const verify::LimitsUse asked = use(r, plan.path);
+      EXPECT_TRUE(asked.within()) << seed << "." << number << ": " << asked.speed << ", " << asked.climb << ", "
+                                  << asked.acceleration << (plan.kept_previous ? ", kept" : "");
+      EXPECT_EQ(plan.verification.limits.acceleration, asked.acceleration);
+      reached += plan.status == verify::PlanStatus::kReaches ? 1 : 0;
+      kept += plan.kept_previous ? 1 : 0;
+      emergencies += plan.emergency ? 1 : 0;
+      const double later = number % 2 == 0 ? 0.237 : 0.5;
+      const base::TimedPoint next = base::sample(plan.path, later);
+      r.position = next.position;
+      r.velocity = next.velocity;
+      for (base::Track& track : tracks) track.position += later * track.velocity;
+      previous = base::remainder(plan.path, later);
+      for (base::TimedPoint& point : previous) point.t -= later;
+    }
+  }
+  EXPECT_GT(reached, 200);
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(emergencies, 5);
+}
+
+// Flying at 2 m/s, and the plan until now says 8 m/s of a vehicle of 5: it is not kept, and not said to reach.
+TEST(HorizonPlanner, DropsAPreviousPlanThatBreaksTheLimits) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0.9, 2}, Vec3::Zero(), 0.4)};
+  const PathRequest r = request(tracks);
+  const base::TimedPath hasty{{0, r.position, r.velocity, Vec3::Zero()},
+                              {0.8, {8, -1, 2}, Vec3::Zero(), Vec3::Zero()},
+                              {2.5, r.target, Vec3::Zero(), Vec3::Zero()}};
+  ASSERT_TRUE(check(r, hasty).free());
+  const verify::Plan plan = plan_once(r, 2, hasty);
+  EXPECT_FALSE(plan.kept_previous);
+  EXPECT_TRUE(plan.verification.limits.within());
+}
+
 verify::Plan open_loop(const PathRequest& r, int threads = 2, double time_limit = 60.0, double commit = 0.5) {
   base::WorkerPool pool(threads);
   return plan_open_loop({}, {}, {r, time_limit, commit}, 1, {40, base::Budget::Time::max()}, pool);
@@ -400,6 +496,7 @@ void expect_flyable(const verify::Plan& plan, const PathRequest& r) {
     ASSERT_GT(dt, 1e-6);
     EXPECT_LE((plan.path[i].position - plan.path[i - 1].position).norm(), r.vehicle.max_speed * dt + 1e-9);
   }
+  EXPECT_TRUE(use(r, plan.path).within());
 }
 
 TEST(PlanOpenLoop, ReachesTheTargetFreeContinuousAndInsideTheVolume) {
@@ -422,6 +519,23 @@ TEST(PlanOpenLoop, CommitNeedNotBeAWholeNumberOfSteps) {
   const verify::Plan plan = open_loop(r, 2, 60.0, 0.33);
   EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
   expect_flyable(plan, r);
+}
+
+TEST(PlanOpenLoop, KeepsTheLimitsOfAnyVehicle) {
+  int reached = 0;
+  for (std::uint64_t seed = 0; seed < kVehicles.size(); ++seed) {
+    std::vector<base::Track> tracks;
+    const PathRequest r = request_for(kVehicles[seed % kVehicles.size()], 1000 + seed, tracks);
+    if (verify::start_blocked(r.position, r.vehicle.radius, tracks)) continue;
+    const verify::Plan plan = open_loop(r, 2, 60.0, seed % 2 == 0 ? 0.5 : 0.33);
+    reached += plan.status == verify::PlanStatus::kReaches ? 1 : 0;
+    const verify::LimitsUse asked = use(r, plan.path);
+    EXPECT_TRUE(asked.within()) << seed << ": " << asked.speed << ", " << asked.climb << ", " << asked.acceleration;
+    for (std::size_t i = 1; i + 1 < plan.path.size(); ++i) {  // whole steps, and no short ones at the joints
+      EXPECT_NEAR(plan.path[i].t - plan.path[i - 1].t, base::HorizonSettings{}.step, 1e-9) << seed;
+    }
+  }
+  EXPECT_GE(reached, 5);
 }
 
 TEST(PlanOpenLoop, SameBitsForAnyNumberOfThreads) {
