@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace jink::planner::base {
@@ -39,7 +40,9 @@ struct OptimizerSettings {
   double wep_max = 1.0;                        ///< rho_max of Eq. (19)
   double exploitation = 6.0;                   ///< gamma of Eq. (20)
   Operators operators = Operators::kAdaptive;  ///< how universes move
+  double narrow_variables = 3.0;               ///< that a narrow move changes, on average
   double focus = 0.7;       ///< probability that a narrow move starts from the best in the first objective
+  int focused = 3;          ///< the best in it, of which that takes one
   bool opposition = false;  ///< whether random universes come in opposite pairs
 };
 
@@ -68,10 +71,20 @@ struct HorizonSettings {
   double deadline_ms = 6.0;          ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
   double back_range = 2.0;           ///< how far they may fall back behind the start
+  double brief_time = 3.0;           ///< looked ahead where all that is met is passed by then
+  double far_time = 9.0;             ///< looked ahead where nothing leads on within lateral_range
+  double far_range = 12.0;           ///< how far waypoints may leave the straight line then
   double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them
   double emergency_share = 0.9;      ///< the same where nothing else keeps the margin
   double acceleration_limit = 10.0;  ///< as which a higher limit counts, m/s²: a tilt of 45 degrees
   double braking = 2.0;              ///< deceleration planned towards a stop, m/s²
+  double catch_up = 0.4;             ///< s, in which a distance from the wished position is made good
+  double shortest_leg = 0.1;         ///< m, between waypoints: nearer ones are not turned at
+  double arrival = 0.05;             ///< m, from the target, where a path is there
+  double near_target = 0.3;          ///< m, from it, where time stops counting
+  double visit_range = 0.2;          ///< m, from it, where a path that is
+  double visit_speed = 0.5;          ///< as slow as this, m/s,
+  double visit_time = 0.3;           ///< s, for so long has visited it
   double margin = 0.35;              ///< kept from every obstacle on top of the radii, for the tracking error
   double sigma_factor = 2.0;         ///< standard deviations of a track's position that clearance is asked for
   double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
@@ -79,13 +92,48 @@ struct HorizonSettings {
   double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
   double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
   double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
+  double hurry = 4.0;                ///< times time_weight, for a vehicle that is stuck
   double length_band = 0.1;        ///< solutions longer than the shortest feasible one by this fraction are not chosen
   double weight_length = 0.6;      ///< of f1 in the modified TOPSIS
   double weight_steering = 0.05;   ///< of f2
   double weight_clearance = 0.35;  ///< of f3
+  int candidates = 32;             ///< of the front, that are verified at most
+  double deadline_share = 0.9;     ///< of the time left, that generations are scheduled for
   bool seeding = true;             ///< whether the search starts from manoeuvres
-  double keep_ratio = 0.05;        ///< a previous plan is kept unless a new one is better by this fraction
+  double seed_clearance = 0.2;     ///< beyond the margin, that those aim for: the vehicle cuts corners
+  int encounters = 3;              ///< the first obstacles met that they lead past
+  int gaps = 3;                    ///< that they lead through, at each of the times at which they do
+  double gap_spacing = 0.5;        ///< between two of the places across the path looked at for a gap
+  double keep_ratio = 0.05;        ///< a previous plan is kept unless one that goes another way is better by this
+  double keep_limits = 1.1;        ///< times the limits, up to which it counts: who is beside it is led back to it
+  double search_ratio = 0.01;      ///< a previous plan that is nearer to unobstructed flight is kept without a search
 
+  static constexpr int kMostSteps = 256;  ///< of a horizon
+
+  /// Steps from one waypoint to the next.
+  [[nodiscard]] int steps_per_leg() const {
+    return std::max(1, static_cast<int>(std::lround(time / waypoints / step)));
+  }
+  /// Time from one waypoint to the next.
+  [[nodiscard]] double leg() const { return steps_per_leg() * step; }
+  /// How far a plan looks ahead, in whole steps: `time`, rounded.
+  [[nodiscard]] double horizon() const { return waypoints * leg(); }
+
+  /// The same settings, for where all that is met is passed soon.
+  [[nodiscard]] HorizonSettings for_brief() const {
+    HorizonSettings result = *this;
+    result.time = std::min(time, brief_time);
+    return result;
+  }
+  /// The same settings, for where the way is blocked. With steps so fine that far_time has more than kMostSteps it is
+  /// that many.
+  [[nodiscard]] HorizonSettings for_far() const {
+    HorizonSettings result = *this;
+    const int most = kMostSteps / waypoints;  // steps of a leg
+    result.time = std::max(time, std::min(far_time, most * waypoints * step));
+    result.lateral_range = std::max(lateral_range, far_range);
+    return result;
+  }
   /// The same settings, of more acceleration.
   [[nodiscard]] HorizonSettings for_emergencies() const {
     HorizonSettings result = *this;

@@ -30,7 +30,7 @@ struct CostLanes {
   /// All paths begin at `start`, at time 0. Keeps references to scene and obstacles.
   [[gnu::always_inline]] CostLanes(const PathScene& scene_, const NearbyObstacles& obstacles_,
                                    const PointLanes<kLanes>& start)
-      : scene(scene_), obstacles(obstacles_), stretch(start), steering(start, scene_.velocity) {}
+      : scene(scene_), obstacles(obstacles_), stretch(start), steering(start, scene_) {}
 
   /// Step n, in which the vehicles fly evenly from where they were to `to`.
   [[gnu::always_inline]] void add(int n, const PointLanes<kLanes>& to) {
@@ -50,7 +50,7 @@ struct CostLanes {
     if (!bounds.inside(scene.volume)) {
       for (std::size_t j = 1; j <= stretch.count; ++j) clearance.add_outside(scene, stretch.places[j]);
     }
-    if (bounds.squared_distance(scene.target) > kNear * kNear) {
+    if (bounds.squared_distance(scene.target) > scene.near_target * scene.near_target) {
       travel.pass((n + 1) * scene.step);
     } else {
       for (std::size_t j = 0; j < stretch.count; ++j) {

@@ -71,18 +71,18 @@ struct FlightLanes {
 
   /// Flies the leg's step i, which is the horizon's step `n`.
   [[gnu::always_inline]] void fly(int n, int i) {
-    constexpr double kPerCatchUp = 1.0 / kCatchUp;
+    const double per_catch_up = scene.per_catch_up;
     const Vec3 base = scene.unobstructed[static_cast<std::size_t>(n)];
     const Vec3 forward = scene.speed[static_cast<std::size_t>(n) + 1] * scene.frame.axis;
     const double since = i * scene.step;
     const Follower follower = scene.follower;
     for (std::size_t l = 0; l < kLanes; ++l) {
       const double wx =
-          forward.x() + drift.x[l] + (base.x() + begin.x[l] + since * drift.x[l] - position.x[l]) * kPerCatchUp;
+          forward.x() + drift.x[l] + (base.x() + begin.x[l] + since * drift.x[l] - position.x[l]) * per_catch_up;
       const double wy =
-          forward.y() + drift.y[l] + (base.y() + begin.y[l] + since * drift.y[l] - position.y[l]) * kPerCatchUp;
+          forward.y() + drift.y[l] + (base.y() + begin.y[l] + since * drift.y[l] - position.y[l]) * per_catch_up;
       const double wz =
-          forward.z() + drift.z[l] + (base.z() + begin.z[l] + since * drift.z[l] - position.z[l]) * kPerCatchUp;
+          forward.z() + drift.z[l] + (base.z() + begin.z[l] + since * drift.z[l] - position.z[l]) * per_catch_up;
       follower.advance(position.x[l], position.y[l], position.z[l], velocity.x[l], velocity.y[l], velocity.z[l], wx, wy,
                        wz);
     }

@@ -10,10 +10,8 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr int kAside = 9, kAbove = 9;  // places looked at on either side
-constexpr double kSpacing = 0.5;       // m, between two of them
-constexpr int kRefinements = 3;        // halvings of it
-constexpr double kLater = 0.3;         // s, after which the place is looked for again
+constexpr int kRefinements = 3;  // halvings of the spacing
+constexpr int kStepsLater = 3;   // after which the place is looked for again
 
 /// An obstacle at one time.
 struct Blocker {
@@ -50,8 +48,8 @@ double lacking(const std::vector<Blocker>& blockers, const Vec3& place) {
 
 /// Moves a place across the path to where it lacks least.
 Gap refined(const std::vector<Blocker>& blockers, const geometry::PathFrame& frame, const base::Box& volume,
-            Gap place) {
-  double step = 0.5 * kSpacing;
+            double spacing, Gap place) {
+  double step = 0.5 * spacing;
   for (int n = 0; n < kRefinements && place.lacking > 0.0; step *= 0.5, ++n) {
     for (bool moved = true; moved;) {
       moved = false;
@@ -72,13 +70,17 @@ Gap refined(const std::vector<Blocker>& blockers, const geometry::PathFrame& fra
 }  // namespace
 
 std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
-                           double clearance, std::size_t most) {
+                           const base::HorizonSettings& settings, std::size_t most) {
+  const double clearance = first_clearance(request, settings);
+  const double spacing = settings.gap_spacing;
+  const double soon = kStepsLater * settings.step;
   const std::vector<Blocker> now = blockers(request, frame, centre, t, clearance);
-  const std::vector<Blocker> later = blockers(request, frame, centre, t + kLater, clearance);
+  const std::vector<Blocker> later = blockers(request, frame, centre, t + soon, clearance);
+  const int aside = static_cast<int>(settings.lateral_range / spacing);
   std::vector<Gap> places;
-  for (int aside = -kAside; aside <= kAside; ++aside) {
-    for (int above = -kAbove; above <= kAbove; ++above) {
-      const Vec3 place = centre + kSpacing * (aside * frame.left + above * frame.up);
+  for (int left = -aside; left <= aside; ++left) {
+    for (int up = -aside; up <= aside; ++up) {
+      const Vec3 place = centre + spacing * (left * frame.left + up * frame.up);
       if (request.volume.contains(place)) places.push_back({place, Vec3::Zero(), lacking(now, place)});
     }
   }
@@ -90,20 +92,34 @@ std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame
   std::stable_sort(places.begin(), places.end(), before);
   const auto taken = [&](const Gap& place) {
     return std::any_of(chosen.begin(), chosen.end(),
-                       [&](const Gap& other) { return (place.position - other.position).norm() < kGapSpacing; });
+                       [&](const Gap& other) { return (place.position - other.position).norm() < 2.0 * spacing; });
   };
   for (const Gap& place : places) {
     if (chosen.size() == most) break;
     if (taken(place)) continue;
-    Gap opening = refined(now, frame, request.volume, place);
+    Gap opening = refined(now, frame, request.volume, spacing, place);
     if (taken(opening)) continue;
     Gap then = opening;
     then.lacking = lacking(later, then.position);
-    then = refined(later, frame, request.volume, then);
-    opening.velocity = (then.position - opening.position) / kLater;
+    then = refined(later, frame, request.volume, spacing, then);
+    opening.velocity = (then.position - opening.position) / soon;
     chosen.push_back(opening);
   }
   return chosen;
+}
+
+Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e) {
+  return base::sample(unobstructed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
+}
+
+std::vector<double> passages(const base::HorizonSettings& settings, double t) {
+  std::vector<double> times;
+  const std::size_t most = static_cast<std::size_t>(settings.waypoints + 1) / 2;
+  for (int k = 1; k <= settings.waypoints && times.size() < most; ++k) {
+    const double time = k * settings.leg();
+    if (time >= t) times.push_back(time);
+  }
+  return times;
 }
 
 }  // namespace jink::planner::horizon

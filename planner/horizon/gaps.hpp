@@ -2,9 +2,11 @@
 // Ways through what stands and swings together: places between the obstacles, across the path.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "planner/geometry/geometry.hpp"
+#include "planner/horizon/encounters.hpp"
 #include "planner/horizon/path_problem.hpp"
 
 namespace jink::planner::horizon {
@@ -16,12 +18,17 @@ struct Gap {
   double lacking = 0.0;          ///< of the clearance wanted, m
 };
 
-/// The clearest places at time `t` in the plane through `centre` across the path's axis, in the volume and at least
-/// kGapSpacing from each other, at most `most`; of those that keep `clearance` (from surface to surface) from
-/// everything the nearest to `centre` first. O(obstacles).
+/// The clearest places at time `t` in the plane through `centre` across the path's axis, within settings.lateral_range
+/// of it either way, in the volume, and at least two spacings (settings.gap_spacing) from each other, at most `most`;
+/// of those that keep first_clearance() (from surface to surface) from everything the nearest to `centre` first.
+/// O(obstacles · places).
 std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
-                           double clearance, std::size_t most);
+                           const base::HorizonSettings& settings, std::size_t most);
 
-inline constexpr double kGapSpacing = 1.0;  ///< m
+/// The point of unobstructed flight's line beside an obstacle that is met.
+Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e);
+
+/// When a gap may be passed in what is met at time `t`: at the next waypoints, half of them at most.
+std::vector<double> passages(const base::HorizonSettings& settings, double t);
 
 }  // namespace jink::planner::horizon

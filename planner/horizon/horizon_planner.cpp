@@ -18,11 +18,6 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr std::size_t kMostVerified = 32;  // candidates looked at when choosing
-constexpr double kDeadlineShare = 0.9;     // of the time left, that generations are planned for
-constexpr double kKept = 1.1;  // of the limits, up to which a previous plan counts: who is beside it is led back to it
-constexpr double kSeedClearance = 0.2;  // m, that initial_paths aim for beyond the margin: the vehicle cuts corners
-
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
   o.sharing = s.sharing;
@@ -37,6 +32,7 @@ base::TimedPath unobstructed(const PathProblem& problem) {
 
 /// What a verified horizon and the whole path's check amount to.
 void conclude(const PathRequest& request, const PathProblem& problem, verify::Plan& plan) {
+  plan.horizon = problem.horizon();
   plan.verification.limits = use_of_limits(plan.path, request, problem.step());
   if (!plan.verification.free()) {
     plan.status = verify::PlanStatus::kBlocked;
@@ -56,6 +52,23 @@ void conclude(const PathRequest& request, const PathProblem& problem, verify::Pl
   }
 }
 
+/// Of two paths at equal times, up to `until`.
+double largest_distance(const base::TimedPath& path, const base::TimedPath& other, double until) {
+  double most = 0.0;
+  for (const base::TimedPoint& point : path) {
+    if (point.t > until) break;
+    most = std::max(most, (point.position - base::sample(other, point.t).position).norm());
+  }
+  return most;
+}
+
+/// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
+int affordable_generations(const base::Budget& budget, double pace, double share) {
+  if (!budget.has_deadline() || pace <= 0.0) return budget.generations;
+  const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
+  return std::clamp(static_cast<int>(std::min(share * left.count() / pace, 1e6)), 1, budget.generations);
+}
+
 }  // namespace
 
 std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
@@ -69,18 +82,15 @@ std::vector<double> initial_solutions(const PathProblem& problem, const PathRequ
   };
   if (!previous.empty()) add(previous);
   if (!settings.seeding) return initial;
-  std::vector<double> times;
-  for (int k = 1; k <= settings.waypoints; ++k) times.push_back(k * problem.horizon() / settings.waypoints);
-  for (const base::TimedPath& path : initial_paths(request, straight, times, request.margin + kSeedClearance))
-    add(path);
+  for (const base::TimedPath& path : initial_paths(request, straight, settings)) add(path);
   return initial;
 }
 
 HorizonPlanner::HorizonPlanner(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
                                const optimizer::MakeOptimizer& make)
-    : settings_(settings), problem_(settings), emergency_(settings.for_emergencies()) {
+    : settings_(settings), problems_{Problems(settings.for_brief()), Problems(settings), Problems(settings.for_far())} {
   const base::OptimizerSettings size = sized(optimizer, settings);
-  const auto [d, n] = std::pair(problem_.dimension(), problem_.objectives());
+  const auto [d, n] = std::pair(problems_[0].usual.dimension(), problems_[0].usual.objectives());
   optimizer_ = make ? make(size, d, n) : std::make_unique<optimizer::Pmomvo>(size, d, n);
 }
 
@@ -105,17 +115,22 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
   if (!is_valid(request)) return {};
   const base::TimedPath none;
   const base::TimedPath& previous = continues(before, request, settings_.step) ? before : none;
-  problem_.prepare(request);
-  if (std::optional<verify::Plan> settled = without_search(request, previous)) return *std::move(settled);
-  const std::optional<Vec3> via = request.stuck ? around(request) : std::nullopt;
-  if (via) problem_.prepare(request, via);
-  verify::Plan plan = search(problem_, request, previous, random, budgets[0], pool);
+  PathProblem& usual = problems(Extent::kUsual).usual;
+  usual.prepare(request);
+  if (std::optional<verify::Plan> settled = without_search(usual, request, previous)) return *std::move(settled);
+  const base::TimedPath straight = unobstructed(usual);
+  Problems& look = problems(extent_of(request, straight, settings_));
+  // Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
+  // else to wait for a wall to go away is for ever cheaper than to fly to its hole.
+  const std::optional<Vec3> via = request.stuck ? gap_ahead(request, straight, look.usual.settings()) : std::nullopt;
+  if (via || &look.usual != &usual) look.usual.prepare(request, via);
+  verify::Plan plan = search(look.usual, request, previous, random, budgets[0], look.pace, pool);
   std::array<verify::SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
-  if (!previous.empty()) keep_previous(request, previous, plan);
+  if (!previous.empty()) keep_previous(look.usual, request, previous, plan);
   const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
   if (!safe && settings_.emergency_share > settings_.acceleration_share) {
-    emergency_.prepare(request, via);
-    verify::Plan harder = search(emergency_, request, previous, random, budgets[1], pool);
+    look.emergency.prepare(request, via);
+    verify::Plan harder = search(look.emergency, request, previous, random, budgets[1], look.pace, pool);
     searches[1] = {harder.schedule, harder.generations};
     plan.evaluations += harder.evaluations;
     if (is_safer(harder.verification, plan.verification)) {
@@ -125,34 +140,28 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
     }
   }
   plan.searches = searches;
-  conclude(request, problem_, plan);
+  conclude(request, look.usual, plan);
   return plan;
 }
 
-// Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
-// else to wait for a wall to go away is for ever cheaper than to fly to its hole.
-std::optional<Vec3> HorizonPlanner::around(const PathRequest& request) const {
-  return gap_ahead(request, unobstructed(problem_), problem_.horizon(), request.margin + kSeedClearance);
-}
-
 // No path is shorter than unobstructed flight, none has less of the last objective than nothing: where unobstructed
-// flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
-// whatever a search found, it is kept.
-std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& request,
+// flight has both it is the plan, and where the previous plan comes so near to it that a search could gain next to
+// nothing, it is kept.
+std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& problem, const PathRequest& request,
                                                            const base::TimedPath& previous) const {
   verify::Plan plan;
-  plan.path = unobstructed(problem_);
-  const optimizer::Cost ideal = problem_.cost_of(plan.path);
+  plan.path = unobstructed(problem);
+  const optimizer::Cost ideal = problem.cost_of(plan.path);
   const auto settle = [&](verify::Plan& settled) {
-    settled.verification = verify_until(settled.path, request, problem_.horizon());
+    settled.verification = verify_until(settled.path, request, problem.horizon());
     if (!settled.verification.free() || settled.verification.min_clearance < request.margin) return false;
-    conclude(request, problem_, settled);
-    return settled.verification.limits.within(kKept);
+    conclude(request, problem, settled);
+    return settled.verification.limits.within(settings_.keep_limits);
   };
   if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
   if (previous.empty()) return std::nullopt;
-  const optimizer::Cost cost = problem_.cost_of(previous);
-  const double slack = settings_.keep_ratio;
+  const optimizer::Cost cost = problem.cost_of(previous);
+  const double slack = settings_.search_ratio;
   if (cost.violation > 0.0 || cost.f[0] > ideal.f[0] * (1.0 + slack) || cost.f[2] > slack) return std::nullopt;
   verify::Plan kept;
   kept.path = base::remainder(previous, 0.0);
@@ -162,14 +171,15 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathRequest& re
 }
 
 verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
-                                    const Random& random, const base::Budget& budget, base::WorkerPool& pool) {
-  initial_ = initial_solutions(problem, request, previous, settings_);
+                                    const Random& random, const base::Budget& budget, double& pace,
+                                    base::WorkerPool& pool) {
+  initial_ = initial_solutions(problem, request, previous, problem.settings());
   base::Budget affordable = budget;
-  affordable.generations = affordable_generations(budget);
+  affordable.generations = affordable_generations(budget, pace, settings_.deadline_share);
   const auto begun = std::chrono::steady_clock::now();
   const optimizer::Front& front = optimizer_->run(problem, initial_, random.seed, random.stream, affordable, pool);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  pace_ = took.count() / optimizer_->report().generations;
+  pace = took.count() / optimizer_->report().generations;
   verify::Plan plan = choose(problem, request, front);
   plan.evaluations = optimizer_->report().evaluations;
   plan.generations = optimizer_->report().generations;
@@ -177,13 +187,6 @@ verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& req
   plan.deadline_reached = optimizer_->report().deadline_reached;
   for (const optimizer::Cost& cost : front.costs) plan.front.push_back({cost.f[0], cost.f[1]});
   return plan;
-}
-
-// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
-int HorizonPlanner::affordable_generations(const base::Budget& budget) const {
-  if (!budget.has_deadline() || pace_ <= 0.0) return budget.generations;
-  const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
-  return std::clamp(static_cast<int>(std::min(kDeadlineShare * left.count() / pace_, 1e6)), 1, budget.generations);
 }
 
 // TOPSIS looks for a compromise between the front's extremes, and a front's far end is no measure of what a detour may
@@ -216,7 +219,7 @@ verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathReques
     if (good || best.path.empty() || is_safer(plan.verification, best.verification)) best = std::move(plan);
     return good;
   };
-  for (std::size_t i = 0; i < std::min(order.size(), kMostVerified); ++i) {
+  for (std::size_t i = 0; i < std::min(order.size(), static_cast<std::size_t>(settings_.candidates)); ++i) {
     const auto candidate = static_cast<std::size_t>(order[i]);
     if (consider(front.solution(candidate), front.costs[candidate].violation == 0.0)) return best;
   }
@@ -228,21 +231,26 @@ verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathReques
   return best;
 }
 
-void HorizonPlanner::keep_previous(const PathRequest& request, const base::TimedPath& previous,
-                                   verify::Plan& plan) const {
-  const optimizer::Cost old_cost = problem_.cost_of(previous);
-  const optimizer::Cost new_cost = problem_.cost_of(plan.path);
+void HorizonPlanner::keep_previous(const PathProblem& problem, const PathRequest& request,
+                                   const base::TimedPath& previous, verify::Plan& plan) const {
+  const optimizer::Cost old_cost = problem.cost_of(previous);
+  const optimizer::Cost new_cost = problem.cost_of(plan.path);
   verify::Plan old;
   old.path = base::remainder(previous, 0.0);
-  old.verification = verify_until(old.path, request, problem_.horizon());
-  old.verification.limits = use_of_limits(old.path, request, problem_.step());
+  old.verification = verify_until(old.path, request, problem.horizon());
+  old.verification.limits = use_of_limits(old.path, request, problem.step());
   bool keep = false;
   if (old_cost.violation == 0.0 && old.verification.free()) {
-    const double slack = settings_.keep_ratio;
+    // To hold on to what was begun matters between ways, not along one. Where two paths that keep the margin pass
+    // something on different sides, there is a time at which it is between them, and each is as far from it as that.
+    const double apart = 2.0 * (request.vehicle.radius + request.margin);
+    const bool same_way = largest_distance(plan.path, old.path, problem.horizon()) < apart;
+    const double slack = same_way ? 0.0 : settings_.keep_ratio;
     const bool no_worse =
         new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
         (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);
-    keep = new_cost.violation > 0.0 || !plan.verification.free() || (no_worse && old.verification.limits.within(kKept));
+    keep = new_cost.violation > 0.0 || !plan.verification.free() ||
+           (no_worse && old.verification.limits.within(settings_.keep_limits));
   } else if (new_cost.violation > 0.0 || !plan.verification.free()) {
     keep = is_safer(old.verification, plan.verification);
   }

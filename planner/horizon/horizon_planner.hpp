@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "planner/base/budget.hpp"
 #include "planner/base/settings.hpp"
 #include "planner/base/worker_pool.hpp"
+#include "planner/horizon/encounters.hpp"
 #include "planner/horizon/path_problem.hpp"
 #include "planner/optimizer/optimizer.hpp"
 #include "planner/verify/plan.hpp"
@@ -18,7 +20,8 @@
 namespace jink::planner::horizon {
 
 /// Where the search for a plan starts: solutions of `problem`, which is prepared for `request`, one after another.
-/// Straight on; `previous`, where there is one; and, with settings.seeding, what a pilot would try first. Allocates.
+/// Straight on; `previous`, where there is one; and, with settings.seeding, what a pilot would try first. The horizon
+/// is that of `problem`. Allocates.
 [[nodiscard]] std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
                                                     const base::TimedPath& previous,
                                                     const base::HorizonSettings& settings);
@@ -36,12 +39,13 @@ class HorizonPlanner {
 
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
   /// empty: none, as one that does not begin in the request's state (continues() in path_check.hpp). It seeds the
-  /// search, and it is kept where it is still free and a new plan is not clearly better; where it asks for more than 1.1
-  /// times the vehicle's limits, only if no new plan is free.
-  /// `number` counts the plans of a flight and names the random stream.
+  /// search, and it is kept where it is still free and a new plan is not clearly better; where it asks for more
+  /// than 1.1 times the vehicle's limits, only if no new plan is free. `number` counts the plans of a flight and names
+  /// the random stream.
   ///
-  /// The returned path starts at time 0 in the request's state and leads to the target. Its status says how much of it
-  /// was verified free in continuous time, apart from the optimizer. Where nothing was found that keeps the margin, the
+  /// How far it looks ahead and aside is extent_of()'s choice. The returned path starts at time 0 in the request's
+  /// state and leads to the target. Its status says how much of it was verified free in continuous time, apart from the
+  /// optimizer. Where nothing was found that keeps the margin, the
   /// search is repeated with more of the vehicle's acceleration (settings.emergency_share), and where that finds
   /// nothing free either the path is the candidate that stays free the longest, then has the softest contact. A request
   /// that is_valid() in path_check.hpp refuses gets kInvalid and no path.
@@ -57,34 +61,37 @@ class HorizonPlanner {
 
   /// The settings given at construction.
   [[nodiscard]] const base::HorizonSettings& settings() const { return settings_; }
-  /// How far a plan looks ahead, s.
-  [[nodiscard]] double horizon() const { return problem_.horizon(); }
 
  private:
   /// Names the random numbers of a plan.
   struct Random {
     std::uint64_t seed = 1, stream = 0;
   };
+  /// For one Extent: what is planned with, and the same with a harder acceleration.
+  struct Problems {
+    PathProblem usual, emergency;
+    double pace = 0.0;  // s per generation, of the plan before; 0: not known
+
+    explicit Problems(const base::HorizonSettings& settings) : usual(settings), emergency(settings.for_emergencies()) {}
+  };
   /// With one budget for each search.
   verify::Plan make(const PathRequest& request, const base::TimedPath& before, const Random& random,
                     const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool);
-  [[nodiscard]] std::optional<Vec3> around(const PathRequest& request) const;
-  [[nodiscard]] std::optional<verify::Plan> without_search(const PathRequest& request,
+  Problems& problems(Extent extent) { return problems_[static_cast<std::size_t>(extent)]; }
+  [[nodiscard]] std::optional<verify::Plan> without_search(const PathProblem& problem, const PathRequest& request,
                                                            const base::TimedPath& previous) const;
   verify::Plan search(PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
-                      const Random& random, const base::Budget& budget, base::WorkerPool& pool);
-  [[nodiscard]] int affordable_generations(const base::Budget& budget) const;
+                      const Random& random, const base::Budget& budget, double& pace, base::WorkerPool& pool);
   [[nodiscard]] verify::Plan choose(const PathProblem& problem, const PathRequest& request,
                                     const optimizer::Front& front) const;
   [[nodiscard]] std::vector<optimizer::Cost> quantized(std::span<const optimizer::Cost> costs) const;
-  void keep_previous(const PathRequest& request, const base::TimedPath& previous, verify::Plan& plan) const;
+  void keep_previous(const PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
+                     verify::Plan& plan) const;
 
   base::HorizonSettings settings_;
-  PathProblem problem_;
-  PathProblem emergency_;  // the same with a harder acceleration
+  std::array<Problems, 3> problems_;  // by Extent
   std::unique_ptr<optimizer::Optimizer> optimizer_;
   std::vector<double> initial_;
-  double pace_ = 0.0;  // s per generation, of the plan before; 0: not known
 };
 
 }  // namespace jink::planner::horizon

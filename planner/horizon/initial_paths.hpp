@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "planner/base/settings.hpp"
@@ -12,22 +11,22 @@
 
 namespace jink::planner::horizon {
 
-/// Paths from the request's state, one point at each time of `times` (rising, s):
-/// - through the clearest places across the path where the first obstacle is met (find_gaps()), at three times, waiting
-///   before it until then;
+/// Paths from the request's state, one point at each waypoint's time, settings.leg() apart:
+/// - through the clearest places across the path where the first obstacle is met (find_gaps()), at the times of
+///   passages(), waiting before it until then;
 /// - unobstructed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;
 /// - lanes beside, above and below it, left again towards the end;
 /// - for each of the first obstacles that unobstructed flight meets, the displacements that lead just past it in
 ///   relative motion, that is out of its velocity obstacle (Fiorini and Shiller 1998): on the near side, on the far
 ///   side, and between them, taken around the time of the encounter; and a stop short of it.
-/// `unobstructed` is flight that regards no obstacle, with points at least to the last of `times`. `clearance` is what
-/// is to be kept from an obstacle's surface. O(obstacles · points).
+/// `unobstructed` is flight that regards no obstacle, with points at least to the horizon. What is to be kept from an
+/// obstacle's surface is first_clearance(). O(obstacles · points).
 std::vector<base::TimedPath> initial_paths(const PathRequest& request, const base::TimedPath& unobstructed,
-                                           std::span<const double> times, double clearance);
+                                           const base::HorizonSettings& settings);
 
-/// The opening through which the way leads on, where unobstructed flight is met until `until`: as initial_paths() looks
-/// for it, at that time. Nothing where no place there keeps `clearance`, or nothing is met.
-std::optional<Vec3> gap_ahead(const PathRequest& request, const base::TimedPath& unobstructed, double until,
-                              double clearance);
+/// The opening through which the way leads on, where unobstructed flight is met within the horizon: as initial_paths()
+/// looks for it, at the horizon's end. Nothing where no place there keeps clear, or nothing is met.
+std::optional<Vec3> gap_ahead(const PathRequest& request, const base::TimedPath& unobstructed,
+                              const base::HorizonSettings& settings);
 
 }  // namespace jink::planner::horizon

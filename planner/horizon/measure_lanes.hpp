@@ -53,15 +53,18 @@ struct TravelLanes {
   [[gnu::always_inline]] void add_time(const PathScene& scene, const PointLanes<kLanes>& to, const Lanes<kLanes>& moved,
                                        double end) {
     const Vec3 target = scene.target;
-    const double steps_to_stay = scene.visit ? kVisitSteps : base::kInfinity;
+    const double near = scene.near_target * scene.near_target;
+    const double range = scene.visit_range * scene.visit_range;
+    const double slow = scene.visit_speed * scene.step;
+    const double steps_to_stay = scene.visit_steps;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double x = to.x[i] - target.x();
       const double y = to.y[i] - target.y();
       const double z = to.z[i] - target.z();
       const double squared = x * x + y * y + z * z;
       length[i] -= counts[i] * visited[i] * moved[i];
-      arrival[i] = squared > kNear * kNear && visited[i] == 0.0 ? end : arrival[i];
-      const bool at_target = squared <= kVisit * kVisit && moved[i] <= kVisitSpeed * scene.step;
+      arrival[i] = squared > near && visited[i] == 0.0 ? end : arrival[i];
+      const bool at_target = squared <= range && moved[i] <= slow;
       stay[i] = at_target ? stay[i] + 1.0 : 0.0;
       visited[i] = stay[i] >= steps_to_stay ? 1.0 : visited[i];
     }
@@ -79,11 +82,13 @@ struct SteeringLanes {
   PointLanes<kLanes> corner,  ///< where the last leg ended
       direction;              ///< the last leg's way, m; before the first leg the velocity
   Lanes<kLanes> steering;     ///< sum of the angles between legs, Eq. (3), rad
+  double shortest = 0.0;      ///< leg that is turned at, m
 
-  /// Begins at `start` with this velocity.
-  [[gnu::always_inline]] SteeringLanes(const PointLanes<kLanes>& start, const Vec3& velocity) {
+  /// Begins at `start` with the scene's velocity.
+  [[gnu::always_inline]] SteeringLanes(const PointLanes<kLanes>& start, const PathScene& scene)
+      : shortest(scene.shortest_leg) {
     corner.copy(start);
-    direction.set(velocity);
+    direction.set(scene.velocity);
   }
 
   /// A leg ends at `to`: the angle to the leg before it. Three loops: the compiler would make one of all that skips the
@@ -112,7 +117,7 @@ struct SteeringLanes {
       const double dz = direction.z[i];
       const bool straight = dx * dx + dy * dy + dz * dz < kNoDirection * kNoDirection;
       const double counted = straight ? 0.0 : angle[i];
-      const bool none = leg.x[i] * leg.x[i] + leg.y[i] * leg.y[i] + leg.z[i] * leg.z[i] < kShortLeg * kShortLeg;
+      const bool none = leg.x[i] * leg.x[i] + leg.y[i] * leg.y[i] + leg.z[i] * leg.z[i] < shortest * shortest;
       steering[i] += none ? 0.0 : counted;
       direction.x[i] = none ? dx : leg.x[i];
       direction.y[i] = none ? dy : leg.y[i];

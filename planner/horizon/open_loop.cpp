@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/elastic_band.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/path_check.hpp"
 
@@ -14,11 +16,14 @@ namespace {
 
 constexpr double kJoint = 1e-9;  // s, within which two instants are the same
 
+/// What else counts in flight decides here between paths of nearly equal length alone: this much of it is left.
+constexpr double kTieBreak = 0.04;
+
 base::HorizonSettings for_shortest(base::HorizonSettings settings) {
-  settings.time_weight *= 0.04;
-  settings.deviation_weight *= 0.07;
-  settings.length_band *= 0.01;
-  settings.keep_ratio *= 0.01;
+  settings.time_weight *= kTieBreak;
+  settings.deviation_weight *= kTieBreak;
+  settings.length_band *= kTieBreak;
+  settings.keep_ratio *= kTieBreak;
   return settings;
 }
 
@@ -77,7 +82,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     // What is known to be free: to the target, or as far as was looked ahead. Without time left that is the result.
     double wanted = std::min(request.commit, end);
     if (part.status == verify::PlanStatus::kReaches) wanted = end;
-    if (part.status == verify::PlanStatus::kProgresses && budget.expired()) wanted = std::min(planner.horizon(), end);
+    if (part.status == verify::PlanStatus::kProgresses && budget.expired()) wanted = std::min(part.horizon, end);
     const double keep = std::min(at_a_point(part.path, wanted), request.time_limit - t);
     append(part.path, t, keep, whole.path);
     t += keep;
@@ -97,6 +102,19 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
   return whole;
 }
 
+/// Where the path arrives and pulled tight it is as good and shorter, that is the path.
+void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& settings, verify::Plan& plan) {
+  if (plan.status != verify::PlanStatus::kReaches) return;
+  base::TimedPath tight =
+      elastic_band(plan.path, request.path, settings.planned_acceleration(request.path.vehicle.max_acceleration));
+  const verify::Verification verification = verify_whole(tight, request, settings.step);
+  if (!verification.free() || !verification.flyable() || base::path_length(tight) >= base::path_length(plan.path) ||
+      verification.min_clearance < std::min(request.path.margin, plan.verification.min_clearance))
+    return;
+  plan.path = std::move(tight);
+  plan.verification = verification;
+}
+
 }  // namespace
 
 verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::OptimizerSettings& optimizer,
@@ -113,13 +131,16 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
   }
   HorizonPlanner patient(for_shortest(settings), optimizer, make);
   verify::Plan plan = attempt(patient, request, seed, budget, pool);
-  if (plan.status == verify::PlanStatus::kReaches || plan.status == verify::PlanStatus::kInvalid || budget.expired())
-    return plan;
+  if (plan.status == verify::PlanStatus::kInvalid) return plan;
+  pull_tight(request, settings, plan);
+  if (budget.expired()) return plan;
   HorizonPlanner eager(settings, optimizer, make);
   verify::Plan other = attempt(eager, request, seed, budget, pool);
+  pull_tight(request, settings, other);
   const auto worth = [&](const verify::Plan& p) {
     const double left = (p.path.back().position - request.path.target).norm();
-    return std::tuple(p.status == verify::PlanStatus::kReaches, p.verification.free(), -left);
+    return std::tuple(p.status == verify::PlanStatus::kReaches, p.verification.free(), -left,
+                      -base::path_length(p.path));
   };
   other.evaluations += plan.evaluations;
   plan.evaluations = other.evaluations;

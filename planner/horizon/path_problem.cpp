@@ -38,12 +38,17 @@ base::Box ball(const Vec3& center, double radius) {
 PathProblem::PathProblem(const base::HorizonSettings& settings)
     : settings_(checked(settings)), lower_(index(3 * settings.waypoints), -1.0), upper_(lower_.size(), 1.0) {
   scene_.waypoints = settings.waypoints;
-  scene_.steps_per_leg = std::max(1, static_cast<int>(std::lround(settings.time / settings.waypoints / settings.step)));
+  scene_.steps_per_leg = settings.steps_per_leg();
   scene_.steps = scene_.steps_per_leg * settings.waypoints;
-  if (scene_.steps > kMaxSteps)
+  if (scene_.steps > base::HorizonSettings::kMostSteps)
     throw std::invalid_argument("horizon: " + std::to_string(scene_.steps) + " steps of time / step; at most " +
-                                std::to_string(kMaxSteps));
+                                std::to_string(base::HorizonSettings::kMostSteps));
   scene_.step = settings.step;
+  scene_.per_catch_up = 1.0 / settings.catch_up;
+  scene_.shortest_leg = settings.shortest_leg;
+  scene_.near_target = settings.near_target;
+  scene_.visit_range = settings.visit_range;
+  scene_.visit_speed = settings.visit_speed;
   scene_.deviation_weight = settings.deviation_weight;
   scene_.reach.resize(index(settings.waypoints));
   scene_.unobstructed.resize(index(scene_.steps + 1));
@@ -58,9 +63,10 @@ void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>&
   scene_.position = request.position;
   scene_.velocity = request.velocity;
   scene_.target = request.target;
-  scene_.visit = request.visit;
+  scene_.visit_steps =
+      request.visit ? std::max(1.0, std::round(settings_.visit_time / settings_.step)) : base::kInfinity;
   scene_.via = via;
-  scene_.time_weight = (via ? kHurry : 1.0) * settings_.time_weight;
+  scene_.time_weight = (via ? settings_.hurry : 1.0) * settings_.time_weight;
   scene_.volume = request.volume;
   scene_.frame = geometry::PathFrame(request.position, request.target);
   scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,
@@ -84,11 +90,11 @@ void PathProblem::unobstructed_flight() {
   scene_.unobstructed[0] = frame.origin;
   for (int step = 1; step <= scene_.steps; ++step) {
     const double left = frame.length - distance;
-    const double wish = std::min({cruise, std::sqrt(2.0 * braking() * left), left / kCatchUp});
+    const double wish = std::min({cruise, std::sqrt(2.0 * braking() * left), left / settings_.catch_up});
     const double next = std::clamp(wish, speed - change, speed + change);
     distance = std::min(frame.length, distance + 0.5 * (speed + next) * settings_.step);
     speed = std::max(0.0, next);
-    if (frame.length - distance > kNear) time = step * settings_.step;
+    if (frame.length - distance > settings_.near_target) time = step * settings_.step;
     unobstructed_[index(step)] = distance;
     scene_.unobstructed[index(step)] = frame.origin + distance * frame.axis;
     scene_.speed[index(step)] = speed;
@@ -99,7 +105,7 @@ void PathProblem::unobstructed_flight() {
     const int step = (k + 1) * scene_.steps_per_leg;
     const double t = step * settings_.step;
     const double along = unobstructed_[index(step)];
-    scene_.reach[index(k)] = {std::max(kArrival, std::min(frame.length, vehicle.max_speed * t) - along),
+    scene_.reach[index(k)] = {std::max(settings_.arrival, std::min(frame.length, vehicle.max_speed * t) - along),
                               along + std::min(settings_.back_range, vehicle.max_speed * t),
                               std::min(settings_.lateral_range, vehicle.max_speed * t)};
   }
@@ -207,7 +213,7 @@ base::TimedPath PathProblem::motion(std::span<const double> x) const {
 
 // A path that has settled near the target within the horizon ends when it came there, on the target: it lands from
 // where it was shortly before, of all such landings by the one that asks for the least, if that is never farther than
-// kArrival from the path. Else, or where there is none, straight on from where the path ends.
+// settings_.arrival from the path. Else, or where there is none, straight on from where the path ends.
 void PathProblem::fly_to_target(base::TimedPath& path) const {
   const base::VehicleLimits& vehicle = request_.vehicle;
   const double change = 1.0 / scene_.follower.inverse_change;  // of the velocity, in a step
@@ -239,7 +245,7 @@ void PathProblem::fly_to_target(base::TimedPath& path) const {
 std::size_t PathProblem::settled_from(const base::TimedPath& path) const {
   const double stoppable = 1.0 / scene_.follower.inverse_change;  // speed that one step takes away
   const auto settled = [&](const base::TimedPoint& point) {
-    return (point.position - request_.target).norm() <= kArrival && point.velocity.norm() <= stoppable;
+    return (point.position - request_.target).norm() <= settings_.arrival && point.velocity.norm() <= stoppable;
   };
   std::size_t first = path.size();
   while (first > 1 && settled(path[first - 1])) --first;
@@ -259,7 +265,7 @@ bool PathProblem::land_at_end(const Approach& approach, base::TimedPath& path) c
       bool near = true;
       for (std::size_t i = first + 1; i < path.size() && near; ++i) {
         const Vec3 landed = approach.after(*landing, path[first], static_cast<int>(i - first)).position;
-        near = (landed - path[i].position).norm() <= kArrival;
+        near = (landed - path[i].position).norm() <= settings_.arrival;
       }
       if (near) best = landing;
     }

@@ -54,8 +54,8 @@ class PathProblem final : public optimizer::Problem {
   /// Prepares a plan: the frame, unobstructed flight, and for every step of the horizon the obstacles that can be met
   /// in it. The request's tracks and known paths must stay as they are until the next call: cost_of() reads them again.
   /// With `via` the way on from a horizon that ends short of that place, along the axis, leads over it, straight on
-  /// being closed, and lost time counts kHurry times: what is put off costs next to nothing otherwise. O(tracks + near
-  /// tracks · steps); no allocation once it has seen as many obstacles.
+  /// being closed, and lost time counts settings().hurry times: what is put off costs next to nothing otherwise.
+  /// O(tracks + near tracks · steps); no allocation once it has seen as many obstacles.
   void prepare(const PathRequest& request, const std::optional<Vec3>& via = {});
 
   [[nodiscard]] int dimension() const override { return 3 * settings_.waypoints; }
@@ -70,8 +70,8 @@ class PathProblem final : public optimizer::Problem {
   /// climb that the request is above are not exceeded. It ends on the target to the bit, unless that takes minutes.
   ///
   /// What evaluate() measures is this motion's first part, to the bit. Only where the measured one comes within
-  /// kArrival (0.05 m) of the target to stay, within the horizon, does this one end: in the two seconds before, it
-  /// leaves it by at most that, and rests on the target then or a few steps later.
+  /// settings().arrival (0.05 m) of the target to stay, within the horizon, does this one end: in the two seconds
+  /// before, it leaves it by at most that, and rests on the target then or a few steps later.
   [[nodiscard]] base::TimedPath motion(std::span<const double> x) const;
   /// Objectives and violation of any path that starts at time 0, measured like those of a solution. It may be where no
   /// solution can be. O(tracks + near tracks · steps), allocates.
@@ -86,12 +86,12 @@ class PathProblem final : public optimizer::Problem {
   [[nodiscard]] int steps() const { return scene_.steps; }
   /// How far the problem looks ahead, s.
   [[nodiscard]] double horizon() const { return scene_.steps * settings_.step; }
+  /// The settings given at construction.
+  [[nodiscard]] const base::HorizonSettings& settings() const { return settings_; }
   /// How many obstacles can be met within the horizon.
   [[nodiscard]] std::size_t obstacles() const { return obstacles_.obstacles(); }
 
  private:
-  static constexpr int kMaxSteps = 256;
-  static constexpr double kHurry = 4.0;
   static constexpr double kBrakingShare = 0.9;  // of the planned acceleration: the rest makes up for whole steps
 
   [[nodiscard]] double most_acceleration() const {

@@ -12,14 +12,6 @@
 
 namespace jink::planner::horizon {
 
-inline constexpr double kCatchUp = 0.4;     ///< s, in which a distance from the wished position is made good
-inline constexpr double kArrival = 0.05;    ///< m, where a path is at the target
-inline constexpr double kNear = 0.3;        ///< m, where time stops counting
-inline constexpr double kVisit = 0.2;       ///< m, where a path that is
-inline constexpr double kVisitSpeed = 0.5;  ///< m/s, as slow as this
-inline constexpr int kVisitSteps = 3;       ///< for so many steps has visited the target
-inline constexpr double kShortLeg = 0.1;    ///< m, legs below have no direction
-
 /// How the vehicle follows a wished velocity: speed, climb and acceleration bounded, the acceleration constant in each
 /// step.
 struct Follower {
@@ -68,7 +60,6 @@ struct PathScene {
   Vec3 position = Vec3::Zero();    ///< of the vehicle at time 0
   Vec3 velocity = Vec3::Zero();    ///< of the vehicle at time 0
   Vec3 target = Vec3::Zero();      ///< where the path ends
-  bool visit = false;              ///< to have been at the target is enough
   std::optional<Vec3> via;         ///< over which the way on leads from where the horizon ends short of it
   base::Box volume;                ///< that the path must not leave
   geometry::PathFrame frame;       ///< from the vehicle to the target
@@ -79,7 +70,13 @@ struct PathScene {
   double cruise = 0.0;             ///< along the axis, the climb limit considered
   double unobstructed_time = 0.0;  ///< to the target
   double inverse_braking = 0.0;    ///< 1 / (2 · planned acceleration): times speed² the way to a stop
-  double time_weight = 0.0;        ///< HorizonSettings::time_weight, times kHurry where there is a `via`
+  double per_catch_up = 0.0;       ///< 1 / HorizonSettings::catch_up
+  double shortest_leg = 0.0;       ///< as HorizonSettings has it, and so the next four
+  double near_target = 0.0;        ///< m
+  double visit_range = 0.0;        ///< m
+  double visit_speed = 0.0;        ///< m/s
+  double visit_steps = 0.0;        ///< HorizonSettings::visit_time in steps; infinite where a visit is not enough
+  double time_weight = 0.0;        ///< HorizonSettings::time_weight, times its `hurry` where there is a `via`
   double deviation_weight = 0.0;   ///< HorizonSettings::deviation_weight
 };
 

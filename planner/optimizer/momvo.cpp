@@ -5,13 +5,6 @@
 #include <cassert>
 
 namespace jink::planner::optimizer {
-namespace {
-
-constexpr double kNarrowVariables = 3.0;  // that a narrow move changes, on average
-constexpr std::size_t kFocused = 3;       // leaders that focus looks at: the best in the first objective
-
-}  // namespace
-
 Momvo::Momvo(std::size_t universes, int dimension, int objectives, const base::OptimizerSettings& settings)
     : universes_(universes),
       dimension_(dimension),
@@ -107,11 +100,11 @@ void Momvo::move_narrowly(std::size_t i, double tdr, base::RandomStream& random)
   const auto d = static_cast<std::size_t>(dimension_);
   double* x = x_.data() + i * d;
   const auto [focused, which] = random.uniform_pair();
-  const std::size_t first = std::min(archive_.size(), kFocused);
+  const std::size_t first = std::min(archive_.size(), static_cast<std::size_t>(settings_.focused));
   const std::size_t member =
       focused < settings_.focus ? static_cast<std::size_t>(which * static_cast<double>(first)) : archive_.draw(random);
   const double* leader = archive_.x(member).data();
-  const double share = kNarrowVariables / static_cast<double>(d);
+  const double share = settings_.narrow_variables / static_cast<double>(d);
   for (std::size_t j = 0; j < d; ++j) {
     const double moved = narrow_wormhole(leader[j], tdr, lower_[j], upper_[j], random);
     x[j] = random.uniform() < share ? std::clamp(moved, lower_[j], upper_[j]) : leader[j];

@@ -44,6 +44,7 @@ struct Plan {
   PlanStatus status = PlanStatus::kInvalid;  ///< what is known of the path
   base::TimedPath path;                      ///< ENU, from time 0 on; empty where the status is kInvalid
   Verification verification;                 ///< of the path, in continuous time
+  double horizon = 0.0;                      ///< horizon mode: how far it was looked ahead, s
   std::int64_t evaluations = 0;              ///< solutions evaluated in all searches
   int schedule = 0;                          ///< generations that were scheduled in the search that gave the path
   int generations = 0;                       ///< generations that were done in it

@@ -10,6 +10,7 @@
 #include "bridge/prediction/motion_learner.hpp"
 #include "planner/base/random.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/geometry/validity.hpp"
 
 namespace jink::bridge::prediction {
 namespace {
@@ -121,7 +122,7 @@ TEST(MotionLearner, ForecastsWhatSwings) {
   ASSERT_TRUE(forecast.has_value());
   EXPECT_EQ(forecast->plain_until, MotionLearner::kLead);
   const planner::geometry::KnownPath path = to_path(*forecast, 3.0, 0.1);
-  ASSERT_TRUE(path.well_formed());
+  ASSERT_TRUE(planner::geometry::is_valid(path));
   for (const double ahead : {0.0, 1.0, 2.0, 3.0})
     EXPECT_LT((path.position(ahead) - swing(5.2 + ahead)).norm(), 0.05) << ahead;
 }
@@ -405,7 +406,7 @@ TEST(ObstaclesOf, PlainPredictionStandsBesideAForecastForAsLongAsItCounts) {
   EXPECT_EQ(obstacles.paths[0].id, 11U);
   EXPECT_NEAR(obstacles.paths[0].points.back().t, kHorizon, 1e-9);
   const planner::geometry::KnownPath& plain = obstacles.paths[1];
-  ASSERT_TRUE(plain.well_formed());
+  ASSERT_TRUE(planner::geometry::is_valid(plain));
   EXPECT_EQ(plain.id, 11U);
   EXPECT_EQ(plain.until, 1.25);
   EXPECT_EQ(plain.radius, tracks[1].radius);

@@ -49,12 +49,13 @@ PathRequest before_the_wall(const std::vector<base::Track>& tracks) {
   r.target = {20, 0, 3};
   r.volume = {{-1, -5, 0.3}, {21, 5, 6}};
   r.tracks = tracks;
+  r.margin = kClearance - base::HorizonSettings{}.seed_clearance;
   return r;
 }
 
 std::vector<Gap> look(const std::vector<base::Track>& tracks, double t, std::size_t most) {
   const PathRequest r = before_the_wall(tracks);
-  return find_gaps(r, geometry::PathFrame(r.position, r.target), kMiddle, t, kClearance, most);
+  return find_gaps(r, geometry::PathFrame(r.position, r.target), kMiddle, t, base::HorizonSettings{}, most);
 }
 
 TEST(Openings, AreWhereTheHoleIs) {
@@ -94,7 +95,7 @@ TEST(Openings, AreTheNearestFirstAndApart) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_TRUE(before_the_wall(tracks).volume.contains(found[i].position));
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GE((found[i].position - found[j].position).norm(), kGapSpacing);
+      EXPECT_GE((found[i].position - found[j].position).norm(), 2.0 * base::HorizonSettings{}.gap_spacing);
     }
   }
 }
@@ -105,9 +106,8 @@ TEST(Openings, AreFlownThroughByAManoeuvre) {
   const PathRequest r = before_the_wall(tracks);
   base::TimedPath unobstructed;
   for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
-  const std::vector<double> times{1, 2, 3, 4, 5, 6};
   int through = 0;
-  for (const base::TimedPath& path : initial_paths(r, unobstructed, times, kClearance)) {
+  for (const base::TimedPath& path : initial_paths(r, unobstructed, base::HorizonSettings{})) {
     if (path.back().position.x() < 9.5) continue;
     bool free = true;
     for (double t = 1.0; t <= 6.0; t += 0.05) {
@@ -130,8 +130,7 @@ TEST(Openings, AreFlownThroughAsFarAsTheTarget) {
   problem.prepare(r);
   const base::TimedPath unobstructed = problem.motion(std::vector<double>(18, 0.0));
   int through = 0;
-  for (const base::TimedPath& path :
-       initial_paths(r, unobstructed, std::vector<double>{1, 2, 3, 4, 5, 6}, kClearance)) {
+  for (const base::TimedPath& path : initial_paths(r, unobstructed, base::HorizonSettings{})) {
     const bool aside = std::any_of(path.begin(), path.end(), [](const base::TimedPoint& point) {
       return std::abs(point.position.x() - 9.0) < 1.0 && (point.position - Vec3(9, 2.6, 1.7)).norm() < 1.0;
     });
@@ -147,7 +146,7 @@ TEST(Openings, AreWhereTheWayLeadsOn) {
     const PathRequest r = before_the_wall(tracks);
     base::TimedPath unobstructed;
     for (int i = 0; i <= 60; ++i) unobstructed.push_back({0.1 * i, {0.3 * i, 0, 3}, {3, 0, 0}, Vec3::Zero()});
-    return gap_ahead(r, unobstructed, 6.0, kClearance);
+    return gap_ahead(r, unobstructed, base::HorizonSettings{});
   };
   const std::optional<Vec3> place = on(wall({{2.6, 1.7}}));
   ASSERT_TRUE(place);
@@ -169,7 +168,7 @@ TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   const auto reaches = [&] {
     const verify::Plan plan = planner.plan(r, {}, 1, 0, {base::HorizonSettings{}.generations}, pool);
     EXPECT_TRUE(plan.verification.free());
-    return base::sample(plan.path, planner.horizon()).position.x();
+    return base::sample(plan.path, base::HorizonSettings{}.horizon()).position.x();
   };
   EXPECT_LT(reaches(), 8.0);
   r.stuck = true;

@@ -50,10 +50,10 @@ std::vector<base::Track> wall() {
 }
 
 verify::Plan plan_once(const PathRequest& r, int threads = 2, const base::TimedPath& previous = {},
-                       std::uint64_t seed = 1) {
+                       std::uint64_t seed = 1, const base::HorizonSettings& settings = {}) {
   base::WorkerPool pool(threads);
-  HorizonPlanner planner{base::HorizonSettings{}};
-  return planner.plan(r, previous, seed, 0, {base::HorizonSettings{}.generations, base::Budget::Time::max()}, pool);
+  HorizonPlanner planner(settings);
+  return planner.plan(r, previous, seed, 0, {settings.generations, base::Budget::Time::max()}, pool);
 }
 
 verify::Verification check(const PathRequest& r, const base::TimedPath& path, double until = base::kInfinity) {
@@ -143,13 +143,41 @@ TEST(HorizonPlanner, DoesNotDependOnEarlierPlans) {
   expect_same_path(planner.plan(crossing_request, {}, 1, 0, budget, pool).path, plan_once(crossing_request).path);
 }
 
-TEST(HorizonPlanner, KeepsThePreviousPlanWhereNothingIsClearlyBetter) {
-  const std::vector<base::Track> tracks = blocked_lines()[1].tracks;
+// Past a sphere on either side: as good as it gets, the side that was begun with is kept.
+TEST(HorizonPlanner, HoldsOnToTheWayItHasBegun) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero())};
   const PathRequest r = request(tracks);
   const verify::Plan first = plan_once(r);
-  const verify::Plan second = plan_once(r, 2, first.path, 2);
-  EXPECT_TRUE(second.kept_previous);
-  expect_same_path(second.path, first.path);
+  base::TimedPath mirrored = first.path;
+  for (base::TimedPoint& point : mirrored) {
+    for (Vec3* v : {&point.position, &point.velocity, &point.acceleration}) v->y() = -v->y();
+  }
+  for (const base::TimedPath& previous : {first.path, mirrored}) {
+    const Vec3 aside = base::sample(previous, 4.0).position - Vec3(10, 0, 2);
+    for (std::uint64_t seed = 2; seed < 6; ++seed) {
+      const verify::Plan plan = plan_once(r, 2, previous, seed);
+      const Vec3 now = base::sample(plan.path, 4.0).position - Vec3(10, 0, 2);
+      EXPECT_GT(aside.y() * now.y() + aside.z() * now.z(), 0.0) << seed;
+    }
+  }
+}
+
+// What holds on to the previous plan is for those that go another way.
+TEST(HorizonPlanner, TakesTheBetterOfTwoPlansOfOneWay) {
+  const std::vector<base::Track> tracks{sphere(1, {10, 0.4, 2}, Vec3::Zero())};
+  const PathRequest r = request(tracks);
+  base::HorizonSettings hasty;
+  hasty.generations = 2;
+  const verify::Plan first = plan_once(r, 2, {}, 1, hasty);
+  ASSERT_TRUE(first.verification.free());
+  PathProblem problem{base::HorizonSettings{}};
+  problem.prepare(r);
+  const double begun = problem.cost_of(first.path).f[0];
+  const verify::Plan better = plan_once(r, 2, first.path, 2);
+  EXPECT_FALSE(better.kept_previous);
+  EXPECT_LT(problem.cost_of(better.path).f[0], begun);
+  EXPECT_GT(problem.cost_of(better.path).f[0] * (1.0 + base::HorizonSettings{}.keep_ratio),
+            begun);  // by less than that
 }
 
 TEST(HorizonPlanner, DropsAPreviousPlanThatIsNoLongerFree) {
@@ -166,9 +194,13 @@ TEST(HorizonPlanner, DropsAPreviousPlanThatIsNoLongerFree) {
 TEST(HorizonPlanner, DropsAPreviousPlanThatIsClearlyWorse) {
   const std::vector<base::Track> none;
   const PathRequest r = request(none);
-  const base::TimedPath detour{{0, r.position, r.velocity, Vec3::Zero()},
-                               {5, {10, 8, 2}, Vec3::Zero(), Vec3::Zero()},
-                               {10, r.target, Vec3::Zero(), Vec3::Zero()}};
+  base::TimedPath detour;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.1 * i;
+    const double share = std::min(t, 10.0 - t) / 5.0;
+    detour.push_back({t, {2.0 * t, 8.0 * share * share * (3.0 - 2.0 * share), 2}, Vec3::Zero(), Vec3::Zero()});
+  }
+  ASSERT_TRUE(continues(detour, r, base::HorizonSettings{}.step));
   const verify::Plan plan = plan_once(r, 2, detour);
   EXPECT_FALSE(plan.kept_previous);
   EXPECT_LT(base::path_length(plan.path), 20.2);
@@ -180,7 +212,7 @@ TEST(HorizonPlanner, RefusesAPreviousPlanThatDoesNotBeginInTheRequestsState) {
   const PathRequest r = request(tracks);
   const verify::Plan first = plan_once(r);
   const verify::Plan afresh = plan_once(r, 2, {}, 2);
-  ASSERT_TRUE(plan_once(r, 2, first.path, 2).kept_previous);
+  ASSERT_NE(base::sample(plan_once(r, 2, first.path, 2).path, 3.0).position, base::sample(afresh.path, 3.0).position);
   const auto expect_refused = [&](const base::TimedPath& previous, const char* what) {
     SCOPED_TRACE(what);
     const verify::Plan plan = plan_once(r, 2, previous, 2);
@@ -230,7 +262,6 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   std::erase_if(tracks, [](const base::Track& track) { return track.position.y() > 0.0; });
   PathRequest r = request(tracks);
   r.track_acceleration = base::HorizonSettings{}.track_acceleration;
-  r.velocity = {2.5, 0, 0};
   const double aside = 1.0 + r.vehicle.radius + r.margin + 0.02;
   base::TimedPath past;
   for (int i = 0; i < 110; ++i) {  // at 2 m/s, braking at 1 m/s² for the last 2 m
@@ -243,7 +274,7 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   past.push_back({11.0, r.target, Vec3::Zero(), Vec3::Zero()});
   ASSERT_GE(check(r, past).min_clearance, r.margin);
   base::HorizonSettings narrow;
-  narrow.lateral_range = 0.5;
+  narrow.lateral_range = narrow.far_range = 0.5;
   narrow.weight_clearance = 1.0;
   narrow.weight_length = 0.1;
   base::WorkerPool pool(2);

@@ -21,6 +21,7 @@ PathRequest straight_on(const std::vector<base::Track>& tracks) {
   r.velocity = {3, 0, 0};
   r.target = {30, 0, 5};
   r.tracks = tracks;
+  r.margin = kPathClearance - base::HorizonSettings{}.seed_clearance;
   return r;
 }
 
@@ -57,14 +58,14 @@ std::size_t ways_through(const std::vector<base::TimedPath>& paths, const std::v
 
 TEST(Manoeuvres, HavePointsAtTheTimesAskedFor) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 3.0, {0, 2, 0})};
-  for (const base::TimedPath& path : initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance)) {
+  for (const base::TimedPath& path : initial_paths(straight_on(tracks), cruise(), base::HorizonSettings{})) {
     ASSERT_EQ(path.size(), kTimes.size());
     for (std::size_t k = 0; k < path.size(); ++k) EXPECT_EQ(path[k].t, kTimes[k]);
   }
 }
 
 TEST(Manoeuvres, WaitSlowDownHurryAndStop) {
-  const auto paths = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
+  const auto paths = initial_paths(straight_on({}), cruise(), base::HorizonSettings{});
   EXPECT_TRUE(contains(paths, 6.0, {12, 0, 5}));        // two seconds late
   EXPECT_TRUE(contains(paths, 6.0, {0.8 * 18, 0, 5}));  // at 80 %
   EXPECT_TRUE(contains(paths, 3.0, {1.3 * 9, 0, 5}));
@@ -72,7 +73,7 @@ TEST(Manoeuvres, WaitSlowDownHurryAndStop) {
 }
 
 TEST(Manoeuvres, GoAsideInFourDirectionsAndReturn) {
-  const auto paths = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
+  const auto paths = initial_paths(straight_on({}), cruise(), base::HorizonSettings{});
   for (const Vec3& side : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     EXPECT_TRUE(contains(paths, 2.0, Vec3(6, 0, 5) + 1.5 * side));
   }
@@ -85,7 +86,7 @@ TEST(Manoeuvres, GoAsideInFourDirectionsAndReturn) {
 TEST(Manoeuvres, LeadPastACrossingObstacleInRelativeMotion) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 3.0, {0, 3, 0})};
   const double wanted = 0.5 + base::VehicleLimits{}.radius + kPathClearance;
-  const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
+  const auto paths = initial_paths(straight_on(tracks), cruise(), base::HorizonSettings{});
   const double s = wanted / std::sqrt(2.0);
   EXPECT_TRUE(contains(paths, 3.0, {9 - s, -s, 5}));
   EXPECT_TRUE(contains(paths, 3.0, {9 + s, s, 5}));
@@ -104,8 +105,8 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
     const Vec3 miss{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
     const std::vector<base::Track> tracks{mover(Vec3(3 * when, 0, 5) + miss, when, velocity)};
     const Vec3 closing = Vec3(3, 0, 0) - velocity;
-    const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
-    const auto without = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
+    const auto paths = initial_paths(straight_on(tracks), cruise(), base::HorizonSettings{});
+    const auto without = initial_paths(straight_on({}), cruise(), base::HorizonSettings{});
     if (paths.size() == without.size()) continue;
     ++met;
     const std::size_t through = ways_through(paths, without, 1);
@@ -124,8 +125,8 @@ TEST(Manoeuvres, ClearTheObstacleTheyAreMeantFor) {
 TEST(Manoeuvres, StopShortOfAnObstacle) {
   const std::vector<base::Track> tracks{mover({9, 0, 5}, 0.0, {0, 0, 0})};
   const double wanted = 0.5 + base::VehicleLimits{}.radius + kPathClearance;
-  const auto paths = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
-  const auto without = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
+  const auto paths = initial_paths(straight_on(tracks), cruise(), base::HorizonSettings{});
+  const auto without = initial_paths(straight_on({}), cruise(), base::HorizonSettings{});
   const base::TimedPath& stop = paths[ways_through(paths, without, 1) + 4];
   EXPECT_NEAR(stop.back().position.x(), 9.0 - wanted, 0.05);
   for (std::size_t k = 1; k < stop.size(); ++k) {
@@ -138,8 +139,8 @@ TEST(Manoeuvres, StopShortOfAnObstacle) {
 TEST(Manoeuvres, LookAtTheFirstThreeEncounters) {
   std::vector<base::Track> tracks;
   for (const double when : {5.0, 2.0, 4.0, 1.0, 3.0}) tracks.push_back(mover({3 * when, 0, 5}, when, {0, 0, 0}));
-  const auto all = initial_paths(straight_on(tracks), cruise(), kTimes, kPathClearance);
-  const auto none = initial_paths(straight_on({}), cruise(), kTimes, kPathClearance);
+  const auto all = initial_paths(straight_on(tracks), cruise(), base::HorizonSettings{});
+  const auto none = initial_paths(straight_on({}), cruise(), base::HorizonSettings{});
   const base::TimedPath& third = all[ways_through(all, none, 3) + 10];
   EXPECT_GT(std::abs(third.at(2).position.y()) + std::abs(third.at(2).position.z() - 5.0), 0.5);  // the one at 3 s
 }

@@ -33,7 +33,7 @@ std::vector<HalfSpace> limits(const planner::horizon::PathRequest& request, doub
   const auto towards = [&](const Vec3& direction, double distance, double of_target) {
     if (!std::isfinite(distance)) return;
     const double left = std::max(0.0, distance - std::clamp(of_target, 0.0, request.margin));
-    result.push_back({-direction, -std::min(std::sqrt(2.0 * braking * left), left / planner::horizon::kCatchUp)});
+    result.push_back({-direction, -std::min(std::sqrt(2.0 * braking * left), left / kCatchUp)});
   };
   const planner::base::Box& volume = request.volume;
   for (int axis = 0; axis < 3; ++axis) {

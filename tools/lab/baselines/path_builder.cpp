@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/horizon/approach.hpp"
+
 namespace jink::tools::lab::baselines {
 namespace {
 
@@ -31,18 +33,16 @@ void PathBuilder::steer(const Vec3& wished) {
 }
 
 void PathBuilder::fly_to_target() {
-  const double stoppable = acceleration_ * step_;
-  const auto arrived = [&] {
-    return (position() - request_.target).norm() <= planner::horizon::kArrival && velocity().norm() <= stoppable;
-  };
-  do {
-    steer(unobstructed_velocity(request_, braking_, position()));
-  } while (!arrived() && t() < kLongest);
-  if (!arrived()) return;
-  planner::base::TimedPoint& last = path_.back();
-  last.position = request_.target;
-  last.velocity.setZero();
-  path_[path_.size() - 2].acceleration = -path_[path_.size() - 2].velocity / step_;
+  const planner::base::VehicleLimits& vehicle = request_.vehicle;
+  const planner::horizon::Approach approach(
+      request_.target, {step_, vehicle.cruise_speed, vehicle.max_climb, acceleration_ * step_, braking_ * step_});
+  while (t() < kLongest) {
+    if (const auto landing = approach.landing(path_.back())) {
+      approach.fly(*landing, path_);
+      return;
+    }
+    steer(approach.wished_velocity(path_.back()));
+  }
 }
 
 void PathBuilder::stop(bool hard) {
@@ -59,7 +59,7 @@ void PathBuilder::follow(const planner::base::TimedPath& reference) {
   while (first + t() < reference.back().t && t() < kLongest) {
     const Vec3 from = planner::base::sample(reference, first + t()).position;
     const Vec3 to = planner::base::sample(reference, first + t() + step_).position;
-    const Vec3 wished = (to - from) / step_ + (from - position()) / planner::horizon::kCatchUp;
+    const Vec3 wished = (to - from) / step_ + (from - position()) / kCatchUp;
     const double fastest = std::sqrt(2.0 * braking_ * (request_.target - position()).norm());
     const double speed = wished.norm();
     steer(speed > fastest ? Vec3(wished * (fastest / speed)) : wished);
@@ -75,7 +75,7 @@ Vec3 unobstructed_velocity(const planner::horizon::PathRequest& request, double 
   const double cruise = climb_share * request.vehicle.cruise_speed > request.vehicle.max_climb
                             ? request.vehicle.max_climb / climb_share
                             : request.vehicle.cruise_speed;
-  return std::min({cruise, std::sqrt(2.0 * braking * distance), distance / planner::horizon::kCatchUp}) * direction;
+  return std::min({cruise, std::sqrt(2.0 * braking * distance), distance / kCatchUp}) * direction;
 }
 
 double normal_acceleration(const planner::horizon::PathRequest& request,

@@ -6,6 +6,9 @@
 
 namespace jink::tools::lab::baselines {
 
+/// s, in which a distance from the wished position is made good, as by jink.
+inline constexpr double kCatchUp = planner::base::HorizonSettings{}.catch_up;
+
 /// Builds a timed path step by step from a request's position and velocity. The velocity goes towards what is wished
 /// with bounded acceleration; speed and climb keep the vehicle's limits (or where they were above, come down to them).
 /// The same law, step and limits as jink's own motion (planner::Follower).
@@ -25,7 +28,7 @@ class PathBuilder {
   void stop(bool hard = false);
 
   /// Follows a timed path from its first time to its last, the first being the motion's time 0: its velocity, and what
-  /// the motion is off by made good within planner::kCatchUp seconds, never faster than allows to brake for the target.
+  /// the motion is off by made good within kCatchUp seconds, never faster than allows to brake for the target.
   /// Precondition: not empty.
   void follow(const planner::base::TimedPath& reference);
 

@@ -58,7 +58,8 @@ void bench_parts() {
 int run(int argc, char** argv) {
   Options options;
   options.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const std::vector<std::string> all{"paper", "quality", "horizon", "ablation", "worlds", "scaling", "parts"};
+  const std::vector<std::string> all{"paper",    "quality", "tangent", "warm", "horizon",
+                                     "ablation", "worlds",  "scaling", "parts"};
   std::vector<std::string> sections;
   CLI::App app(kAbout, "jink_bench");
   app.add_flag("--quick", options.quick, "Every table with few samples, in about a minute");
@@ -68,7 +69,9 @@ int run(int argc, char** argv) {
       app.add_option("--replans", options.replans, "Replans in each world, 10000 by default, 300 with --quick")
           ->check(CLI::Range(1, 1000000));
   app.add_option("sections", sections,
-                 "paper (time), quality (hypervolume, SLR), horizon, ablation, worlds, scaling, parts; all by default")
+                 "paper (time), quality (hypervolume, SLR), tangent (plans beside exact paths), warm (plans beside "
+                 "larger budgets), horizon, ablation, "
+                 "worlds, scaling, parts; all by default")
       ->check(CLI::IsMember(all));
   app.footer("Options that begin with --benchmark_ go to Google Benchmark: --benchmark_filter=REGEX.");
   app.allow_extras();
@@ -91,6 +94,8 @@ int run(int argc, char** argv) {
   };
   if (wanted("paper")) bench_paper(options);
   if (wanted("quality")) bench_quality(options);
+  if (wanted("tangent")) bench_tangent(options);
+  if (wanted("warm")) bench_warm(options);
   if (wanted("horizon")) bench_horizon(options);
   if (wanted("ablation")) bench_ablation(options);
   if (wanted("worlds")) bench_worlds(options);

@@ -59,6 +59,8 @@ void print_note(const std::string& note);
 // The sections; each prints its tables.
 void bench_paper(const Options& options);     ///< time of paper missions, beside pagmo2
 void bench_quality(const Options& options);   ///< hypervolume and SLR, beside pagmo2
+void bench_tangent(const Options& options);   ///< open-loop plans beside exact shortest paths
+void bench_warm(const Options& options);      ///< plans of a flight beside larger budgets
 void bench_horizon(const Options& options);   ///< warm replanning in moving worlds
 void bench_ablation(const Options& options);  ///< what each part of the optimizer is worth
 void bench_worlds(const Options& options);    ///< plans and flights in the families of worlds

@@ -200,10 +200,15 @@ TEST(RrtPilot, FliesPastWhatStandsAndWhatComes) {
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
 }
 
+// The path is planned with more than the margin, since the flown motion cuts its corners.
 TEST(PaperPilot, KeepsItsPathWhileThatKeepsTheMarginAndNoLonger) {
-  PaperPilot pilot({}, {});
-  bridge::companion::PlanJob asked = job({0, 0, 2}, {12, 0, 2}, {ball(0.5, {6, 0.1, 2})});
-  asked.previous = plan(pilot, asked).path;
+  planner::base::PaperSettings wide;
+  wide.margin = planner::base::HorizonSettings{}.margin + 0.2;
+  PaperPilot pilot({}, wide);
+  bridge::companion::PlanJob asked = job({0, 0, 2}, {12, 0, 2}, {ball(0.5, {6, 0.6, 2})});
+  const planner::verify::Plan first = plan(pilot, asked);
+  ASSERT_GT(first.verification.min_clearance, asked.request.margin);
+  asked.previous = first.path;
   ++asked.number;
   const planner::verify::Plan kept = plan(pilot, asked);
   EXPECT_TRUE(kept.kept_previous);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/encounters.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/gaps.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr double kDifference = 0.05;  // s, over which twice a known path's velocity is taken
+
+/// Calls visit(distance of the centres that is wanted, until when it counts, position at a time, velocity at a time)
+/// for each obstacle.
+template <typename Visit>
+void for_each_obstacle(const PathRequest& request, double clearance, const Visit& visit) {
+  const double trust = request.acceleration_trust;
+  const double wanted = request.vehicle.radius + clearance;
+  for (const base::Track& track : request.tracks) {
+    visit(
+        track.radius + wanted, base::kInfinity, [&](double t) { return geometry::predict_position(track, t, trust); },
+        [&](double t) { return geometry::predict_velocity(track, t, trust); });
+  }
+  for (const geometry::KnownPath& path : request.paths) {
+    visit(
+        path.radius + path.margin + wanted, path.until, [&](double t) { return path.position(t); },
+        [&](double t) -> Vec3 {
+          return (path.position(t + kDifference) - path.position(t - kDifference)) / (2.0 * kDifference);
+        });
+  }
+}
+
+double squared_distance(const Vec3& point, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double length = way.squaredNorm();
+  const double s = length > 0.0 ? std::clamp((point - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (from + s * way - point).squaredNorm();
+}
+
+/// Whether, from settings.brief_time on, neither unobstructed flight nor one up to half as fast is near anything.
+bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed, double until,
+                 const base::HorizonSettings& settings) {
+  std::vector<Vec3> slow;
+  for (const base::TimedPoint& point : unobstructed) {
+    slow.push_back(base::sample(unobstructed, 0.5 * point.t).position);
+  }
+  bool passes = true;
+  for_each_obstacle(request, first_clearance(request, settings),
+                    [&](double wanted, double ends, const auto& position, const auto& /*velocity*/) {
+                      for (std::size_t i = 0; passes && i < slow.size(); ++i) {
+                        const base::TimedPoint& point = unobstructed[i];
+                        if (point.t > std::min(until, ends)) break;
+                        passes = point.t <= settings.brief_time ||
+                                 squared_distance(position(point.t), slow[i], point.position) >= wanted * wanted;
+                      }
+                    });
+  return passes;
+}
+
+}  // namespace
+
+std::vector<Encounter> encounters(const PathRequest& request, const base::TimedPath& unobstructed, double until,
+                                  const base::HorizonSettings& settings) {
+  std::vector<Encounter> list;
+  for_each_obstacle(request, first_clearance(request, settings),
+                    [&](double wanted, double ends, const auto& position, const auto& velocity) {
+                      double least = wanted * wanted;
+                      std::optional<Encounter> met;
+                      for (const base::TimedPoint& point : unobstructed) {
+                        if (point.t > std::min(until, ends)) break;
+                        const Vec3 apart = point.position - position(point.t);
+                        if (apart.squaredNorm() >= least) continue;
+                        least = apart.squaredNorm();
+                        met = {point.t, apart, point.velocity - velocity(point.t), wanted};
+                      }
+                      if (met) list.push_back(*met);
+                    });
+  const std::size_t first = std::min(static_cast<std::size_t>(settings.encounters), list.size());
+  std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(first), list.end(),
+                    [](const Encounter& a, const Encounter& b) { return a.t < b.t; });
+  list.resize(first);
+  return list;
+}
+
+Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,
+                 const base::HorizonSettings& settings) {
+  const double until = settings.horizon();
+  const std::vector<Encounter> met = encounters(request, unobstructed, until, settings);
+  if (met.empty()) return Extent::kUsual;
+  if (settings.far_range > settings.lateral_range || settings.far_time > settings.time) {
+    const geometry::PathFrame frame(request.position, request.target);
+    const Vec3 centre = beside(unobstructed, frame, met.front());
+    const auto leads_on = [&](const base::HorizonSettings& within) {
+      const std::vector<double> times = passages(within, met.front().t);
+      return std::any_of(times.begin(), times.end(), [&](double t) {
+        const std::vector<Gap> gaps = find_gaps(request, frame, centre, t, within, 1);
+        return !gaps.empty() && gaps.front().lacking <= 0.0;
+      });
+    };
+    if (!leads_on(settings) && leads_on(settings.for_far())) return Extent::kFar;
+  }
+  if (settings.brief_time < until && passes_soon(request, unobstructed, until, settings)) return Extent::kBrief;
+  return Extent::kUsual;
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What unobstructed flight meets, and how far a plan has to look for it.
+#pragma once
+
+#include <vector>
+
+#include "planner/base/settings.hpp"
+#include "planner/base/trajectory.hpp"
+#include "planner/horizon/path_problem.hpp"
+
+namespace jink::planner::horizon {
+
+/// Where unobstructed flight comes too close to an obstacle.
+struct Encounter {
+  double t = 0.0;               ///< of the closest approach, s
+  Vec3 apart = Vec3::Zero();    ///< from the obstacle to the vehicle, then, m
+  Vec3 closing = Vec3::Zero();  ///< velocity of the vehicle relative to the obstacle, then, m/s
+  double wanted = 0.0;          ///< distance between the centres, m
+};
+
+/// What is kept from an obstacle's surface by what a search begins with, m: the vehicle cuts corners.
+inline double first_clearance(const PathRequest& request, const base::HorizonSettings& settings) {
+  return request.margin + settings.seed_clearance;
+}
+
+/// The first settings.encounters encounters within `until`, in order of time. `unobstructed` is flight that regards no
+/// obstacle. O(obstacles · points).
+std::vector<Encounter> encounters(const PathRequest& request, const base::TimedPath& unobstructed, double until,
+                                  const base::HorizonSettings& settings);
+
+/// How far a plan looks ahead and aside.
+enum class Extent {
+  kBrief,  ///< HorizonSettings::for_brief()
+  kUsual,  ///< as the settings are
+  kFar     ///< HorizonSettings::for_far()
+};
+
+/// How far the way on asks to be looked at. kFar: where it is met first no place within settings.lateral_range keeps
+/// clear, at that time or one of the next waypoints', and one within settings.far_range does. kBrief: all that is met
+/// within the horizon is passed within settings.brief_time, by flights down to half as fast too. `unobstructed` as for
+/// encounters(), up to the usual horizon. O(obstacles · (points + places)), allocates.
+Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,
+                 const base::HorizonSettings& settings);
+
+}  // namespace jink::planner::horizon
