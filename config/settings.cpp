@@ -116,7 +116,6 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"gap_spacing", &HorizonSettings::gap_spacing, closed(0.05, 100)},
     {"keep_ratio", &HorizonSettings::keep_ratio, below(0, 1)},
     {"keep_limits", &HorizonSettings::keep_limits, closed(0, 100)},
-    {"search_ratio", &HorizonSettings::search_ratio, below(0, 1)},
 };
 
 constexpr Field<CompanionSettings> kCompanion[] = {

@@ -104,9 +104,8 @@ struct HorizonSettings {
   int encounters = 3;              ///< the first obstacles met that they lead past
   int gaps = 3;                    ///< that they lead through, at each of the times at which they do
   double gap_spacing = 0.5;        ///< between two of the places across the path looked at for a gap
-  double keep_ratio = 0.05;        ///< a previous plan is kept unless one that goes another way is better by this
+  double keep_ratio = 0.05;        ///< a previous plan is kept unless a new one is better by this fraction
   double keep_limits = 1.1;        ///< times the limits, up to which it counts: who is beside it is led back to it
-  double search_ratio = 0.01;      ///< a previous plan that is nearer to unobstructed flight is kept without a search
 
   static constexpr int kMostSteps = 256;  ///< of a horizon
 

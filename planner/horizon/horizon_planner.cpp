@@ -52,16 +52,6 @@ void conclude(const PathRequest& request, const PathProblem& problem, verify::Pl
   }
 }
 
-/// Of two paths at equal times, up to `until`.
-double largest_distance(const base::TimedPath& path, const base::TimedPath& other, double until) {
-  double most = 0.0;
-  for (const base::TimedPoint& point : path) {
-    if (point.t > until) break;
-    most = std::max(most, (point.position - base::sample(other, point.t).position).norm());
-  }
-  return most;
-}
-
 /// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
 int affordable_generations(const base::Budget& budget, double pace, double share) {
   if (!budget.has_deadline() || pace <= 0.0) return budget.generations;
@@ -145,8 +135,8 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
 }
 
 // No path is shorter than unobstructed flight, none has less of the last objective than nothing: where unobstructed
-// flight has both it is the plan, and where the previous plan comes so near to it that a search could gain next to
-// nothing, it is kept.
+// flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
+// whatever a search found, it is kept.
 std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& problem, const PathRequest& request,
                                                            const base::TimedPath& previous) const {
   verify::Plan plan;
@@ -161,7 +151,7 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& pr
   if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
   if (previous.empty()) return std::nullopt;
   const optimizer::Cost cost = problem.cost_of(previous);
-  const double slack = settings_.search_ratio;
+  const double slack = settings_.keep_ratio;
   if (cost.violation > 0.0 || cost.f[0] > ideal.f[0] * (1.0 + slack) || cost.f[2] > slack) return std::nullopt;
   verify::Plan kept;
   kept.path = base::remainder(previous, 0.0);
@@ -241,11 +231,7 @@ void HorizonPlanner::keep_previous(const PathProblem& problem, const PathRequest
   old.verification.limits = use_of_limits(old.path, request, problem.step());
   bool keep = false;
   if (old_cost.violation == 0.0 && old.verification.free()) {
-    // To hold on to what was begun matters between ways, not along one. Where two paths that keep the margin pass
-    // something on different sides, there is a time at which it is between them, and each is as far from it as that.
-    const double apart = 2.0 * (request.vehicle.radius + request.margin);
-    const bool same_way = largest_distance(plan.path, old.path, problem.horizon()) < apart;
-    const double slack = same_way ? 0.0 : settings_.keep_ratio;
+    const double slack = settings_.keep_ratio;
     const bool no_worse =
         new_cost.f[0] > old_cost.f[0] * (1.0 + settings_.length_band) ||
         (old_cost.f[0] <= new_cost.f[0] * (1.0 + slack) && old_cost.f[2] <= new_cost.f[2] * (1.0 + slack) + slack);

@@ -16,14 +16,18 @@ namespace {
 
 constexpr double kJoint = 1e-9;  // s, within which two instants are the same
 
-/// What else counts in flight decides here between paths of nearly equal length alone: this much of it is left.
-constexpr double kTieBreak = 0.04;
+/// What else counts in flight decides here between paths of nearly equal length alone. So much of it is left that a
+/// second lost, or a metre aside, weighs some centimetres of length; of what is kept, that a millimetre in a metre
+/// counts.
+constexpr double kTimeLeft = 0.04;
+constexpr double kDeviationLeft = 0.07;
+constexpr double kSlackLeft = 0.01;
 
 base::HorizonSettings for_shortest(base::HorizonSettings settings) {
-  settings.time_weight *= kTieBreak;
-  settings.deviation_weight *= kTieBreak;
-  settings.length_band *= kTieBreak;
-  settings.keep_ratio *= kTieBreak;
+  settings.time_weight *= kTimeLeft;
+  settings.deviation_weight *= kDeviationLeft;
+  settings.length_band *= kSlackLeft;
+  settings.keep_ratio *= kSlackLeft;
   return settings;
 }
 
