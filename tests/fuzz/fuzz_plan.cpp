@@ -356,8 +356,10 @@ void check_limits(const Case& c, const base::TimedPath& path) {
     require(v.length() <= most, "a plan beyond the speed");
     require(std::abs(v.z) <= climb, "a plan beyond the climb");
     if (i == 1) continue;
-    // A plan before is cut within its first segment, whose velocity is that of the whole one.
-    const Real whole = i == 2 ? Real{path[2].t} - Real{path[1].t} : 0;
+    // A plan before is cut within its first segment, and one at its time limit within its last: the velocity is that of
+    // the whole one.
+    Real whole = i == 2 ? Real{path[2].t} - Real{path[1].t} : 0;
+    if (c.open_loop && i + 1 == path.size()) whole = std::max(whole, Real{path[i - 1].t} - Real{path[i - 2].t});
     const Real between = std::max(whole, (Real{path[i].t} - Real{path[i - 2].t}) / 2);
     const Real change = (v - vehicle.velocity(i - 1)).length();
     require(change <= between * limits.max_acceleration * (1 + 1e-6L) + rounding, "a plan beyond the acceleration");
