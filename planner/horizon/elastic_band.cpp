@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/each_obstacle.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -68,24 +68,22 @@ class Band {
 
   void look_around() {
     pushes_.clear();
-    const auto add = [&](double distance, double until, const auto& position) {
-      Vec3 to = position(path_.front().t);
-      for (std::size_t k = 1; k < p_.size() && path_[k - 1].t < until; ++k) {
-        const Vec3 from = to;
-        to = position(path_[k].t);
-        const double moved = 0.5 * ((to - from).norm() + (p_[k] - p_[k - 1]).norm());
-        const double near = distance + kNearBy + moved;
-        if ((p_[k] + p_[k - 1] - from - to).squaredNorm() < 4.0 * near * near)
-          pushes_.push_back({k, from, to, distance});
-      }
-    };
-    const double kept = request_.vehicle.radius + request_.margin + kBeyond;
-    for (const base::Track& track : request_.tracks) {
-      add(track.radius + kept, base::kInfinity,
-          [&](double t) { return geometry::predict_position(track, t, request_.acceleration_trust); });
-    }
-    for (const geometry::KnownPath& known : request_.paths) {
-      add(known.radius + known.margin + kept, known.until, [&](double t) { return known.position(t); });
+    for_each_obstacle(request_, request_.margin + kBeyond,
+                      [&](double distance, double until, const auto& position, const auto& /*velocity*/) {
+                        add_pushes(distance, until, position);
+                      });
+  }
+
+  /// Of one obstacle, for the pieces near which it comes before `until`.
+  template <typename Position>
+  void add_pushes(double distance, double until, const Position& position) {
+    Vec3 to = position(path_.front().t);
+    for (std::size_t k = 1; k < p_.size() && path_[k - 1].t < until; ++k) {
+      const Vec3 from = to;
+      to = position(path_[k].t);
+      const double moved = 0.5 * ((to - from).norm() + (p_[k] - p_[k - 1]).norm());
+      const double near = distance + kNearBy + moved;
+      if ((p_[k] + p_[k - 1] - from - to).squaredNorm() < 4.0 * near * near) pushes_.push_back({k, from, to, distance});
     }
   }
 

@@ -5,40 +5,12 @@
 #include <cstddef>
 #include <optional>
 
-#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/geometry/geometry.hpp"
+#include "planner/horizon/each_obstacle.hpp"
 #include "planner/horizon/gaps.hpp"
 
 namespace jink::planner::horizon {
 namespace {
-
-constexpr double kDifference = 0.05;  // s, over which twice a known path's velocity is taken
-
-/// Calls visit(distance of the centres that is wanted, until when it counts, position at a time, velocity at a time)
-/// for each obstacle.
-template <typename Visit>
-void for_each_obstacle(const PathRequest& request, double clearance, const Visit& visit) {
-  const double trust = request.acceleration_trust;
-  const double wanted = request.vehicle.radius + clearance;
-  for (const base::Track& track : request.tracks) {
-    visit(
-        track.radius + wanted, base::kInfinity, [&](double t) { return geometry::predict_position(track, t, trust); },
-        [&](double t) { return geometry::predict_velocity(track, t, trust); });
-  }
-  for (const geometry::KnownPath& path : request.paths) {
-    visit(
-        path.radius + path.margin + wanted, path.until, [&](double t) { return path.position(t); },
-        [&](double t) -> Vec3 {
-          return (path.position(t + kDifference) - path.position(t - kDifference)) / (2.0 * kDifference);
-        });
-  }
-}
-
-double squared_distance(const Vec3& point, const Vec3& from, const Vec3& to) {
-  const Vec3 way = to - from;
-  const double length = way.squaredNorm();
-  const double s = length > 0.0 ? std::clamp((point - from).dot(way) / length, 0.0, 1.0) : 0.0;
-  return (from + s * way - point).squaredNorm();
-}
 
 /// Whether, from settings.brief_time on, neither unobstructed flight nor one up to half as fast is near anything.
 bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed, double until,
@@ -53,8 +25,10 @@ bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed
                       for (std::size_t i = 0; passes && i < slow.size(); ++i) {
                         const base::TimedPoint& point = unobstructed[i];
                         if (point.t > std::min(until, ends)) break;
-                        passes = point.t <= settings.brief_time ||
-                                 squared_distance(position(point.t), slow[i], point.position) >= wanted * wanted;
+                        if (point.t <= settings.brief_time) continue;
+                        const Vec3 there = position(point.t);
+                        const double squared = geometry::swept_distance_squared(slow[i], point.position, there, there);
+                        passes = squared >= wanted * wanted;
                       }
                     });
   return passes;

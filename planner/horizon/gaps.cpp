@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/each_obstacle.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -22,17 +22,11 @@ struct Blocker {
 std::vector<Blocker> blockers(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre,
                               double t, double clearance) {
   std::vector<Blocker> list;
-  const double wanted = request.vehicle.radius + clearance;
-  const auto add = [&](const Vec3& position, double radius) {
-    const double distance = radius + wanted;
-    if (std::abs((position - centre).dot(frame.axis)) < distance) list.push_back({position, distance});
-  };
-  for (const base::Track& track : request.tracks) {
-    add(geometry::predict_position(track, t, request.acceleration_trust), track.radius);
-  }
-  for (const geometry::KnownPath& path : request.paths) {
-    if (t <= path.until) add(path.position(t), path.radius + path.margin);
-  }
+  for_each_obstacle(request, clearance, [&](double wanted, double until, const auto& where, const auto& /*velocity*/) {
+    if (t > until) return;
+    const Vec3 position = where(t);
+    if (std::abs((position - centre).dot(frame.axis)) < wanted) list.push_back({position, wanted});
+  });
   return list;
 }
 
