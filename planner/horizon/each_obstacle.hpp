@@ -7,9 +7,9 @@
 
 namespace jink::planner::horizon {
 
-/// Calls visit(wanted, until, position, velocity) for each of the request's obstacles, tracks first: the distance of the
-/// centres at which the surfaces are `clearance` apart, m; the time up to which it counts, s; where it is, and how fast,
-/// at a time (functions of t >= 0, ENU).
+/// Calls visit(wanted, until, position, velocity) for each of the request's obstacles, tracks first: the distance of
+/// the centres at which the surfaces are `clearance` apart, m; the time up to which it counts, s; where it is, and how
+/// fast, at a time (functions of t >= 0, ENU).
 template <typename Visit>
 void for_each_obstacle(const PathRequest& request, double clearance, const Visit& visit) {
   constexpr double kDifference = 0.05;  // s, over which twice a known path's velocity is taken
