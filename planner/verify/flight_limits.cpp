@@ -33,21 +33,28 @@ LimitsUse use_of_limits(std::span<const base::TimedPoint> path, const FlightLimi
   LimitsUse use;
   const double most_speed = std::max(limits.max_speed, limits.velocity.norm());
   const double most_climb = std::max(limits.max_climb, std::abs(limits.velocity.z()));
-  const auto change = [&](const Segment& from, const Segment& to, double time, double least) {
+  const auto change = [&](const Segment& from, const Segment& to, double time) {
     const double by = (to.velocity - from.velocity).norm() - from.rounding - to.rounding;
-    raise(use.acceleration, by / std::max(time, least) / limits.max_acceleration);
+    raise(use.acceleration, by / time / limits.max_acceleration);
+  };
+  // The first segment and the last, of which a part may be cut off, count as no shorter than the one beside them.
+  const std::size_t n = path.size();
+  const auto whole = [&](std::size_t neighbour) {
+    return neighbour > 0 && neighbour < n ? path[neighbour].t - path[neighbour - 1].t : limits.step;
   };
   Segment before;
   before.velocity = limits.velocity;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Segment now(path[i - 1], path[i]);
+  for (std::size_t i = 1; i < n; ++i) {
+    Segment now(path[i - 1], path[i]);
+    if (i == 1) now.duration = std::max(now.duration, whole(2));
+    if (i + 1 == n) now.duration = std::max(now.duration, whole(i - 1));
     raise(use.speed, (now.velocity.norm() - now.rounding) / most_speed);
     raise(use.climb, (std::abs(now.velocity.z()) - now.rounding) / most_climb);
-    change(before, now, 0.5 * (before.duration + now.duration), i == 1 ? 0.5 * limits.step : limits.step);
+    change(before, now, 0.5 * (before.duration + now.duration));
     before = now;
   }
   Segment rest;
-  if (limits.rests && path.size() > 1) change(before, rest, 0.5 * before.duration, 0.5 * limits.step);
+  if (limits.rests && n > 1) change(before, rest, 0.5 * before.duration);
   return use;
 }
 

@@ -15,8 +15,8 @@ struct FlightLimits {
   double max_speed = base::kInfinity;         ///< m/s
   double max_climb = base::kInfinity;         ///< m/s, up and down
   double max_acceleration = base::kInfinity;  ///< m/s²
-  double step = 0.0;                          ///< s, no change of velocity counts as faster than in such a time
-  bool rests = true;                          ///< the path ends at rest
+  double step = 0.0;  ///< s, of a whole segment, where a path is one segment that may be cut off
+  bool rests = true;  ///< the path ends at rest
 };
 
 /// The most that a path asks for, each relative to its limit; 0 where nothing was judged.
@@ -36,9 +36,9 @@ struct LimitsUse {
 /// a segment, its way over its duration, is that of the motion in the middle of it. Speed and climb are those of the
 /// segments. Acceleration is the change from one segment to the next over the time between their middles, from
 /// `limits.velocity` to the first segment over half of that one, and from the last segment to rest, where the path ends
-/// at rest, over half of the last. So a motion that keeps its limits passes. Where a path was cut off in the middle of
-/// a step, the rest of it is short and flown at the velocity of the whole: the times count as no less than
-/// `limits.step`, and half of it.
+/// at rest, over half of the last. So a motion that keeps its limits passes. A path may begin and end in the middle of
+/// a step, whose rest is short and flown at the velocity of the whole: its first and its last segment count as no
+/// shorter than the ones beside them, and `limits.step` where there is no other.
 ///
 /// A vehicle that is faster at the start than its limits may come down from there: not above the limit, or what
 /// `limits.velocity` has, where that is more. What rounding of coordinates and times can amount to is taken off.

@@ -39,21 +39,18 @@ TEST(FlightLimits, SpeedAndClimbAreThoseOfTheSegments) {
   EXPECT_FALSE(use_of_limits(path, limits).within());
 }
 
-// 1 m/s for 1 s, then 3 m/s for 3 s: 2 m/s between the middles, 2 s apart. From rest to 1 m/s in half a second: 2 m/s².
-// From 3 m/s to rest in 1.5 s: 2 m/s².
+// 1 m/s for 2 s, then 3 m/s for 1 s and 2 s more: 2 m/s between the middles, 1.5 s apart. From -3 m/s to 1 m/s in a
+// second: 4 m/s². From 3 m/s to rest in a second: 3 m/s².
 TEST(FlightLimits, AccelerationIsBetweenTheMiddlesOfSegments) {
-  const base::TimedPath path = path_of({{0, {0, 0, 0}}, {1, {1, 0, 0}}, {4, {10, 0, 0}}});
+  const base::TimedPath path = path_of({{0, {0, 0, 0}}, {2, {2, 0, 0}}, {3, {5, 0, 0}}, {5, {11, 0, 0}}});
   FlightLimits limits;
   limits.max_acceleration = 4.0;
   limits.velocity = {1, 0, 0};
   limits.rests = false;
-  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 0.25, 1e-12);
-  limits.velocity = {0, 0, 0};
-  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 0.5, 1e-12);
-  limits.velocity = {1, 0, 0};
+  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 1.0 / 3.0, 1e-12);
   limits.rests = true;
-  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 0.5, 1e-12);
-  limits.velocity = {-1, 0, 0};  // 2 m/s in half a second
+  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 0.75, 1e-12);
+  limits.velocity = {-3, 0, 0};
   EXPECT_NEAR(use_of_limits(path, limits).acceleration, 1.0, 1e-12);
   EXPECT_TRUE(use_of_limits(path, limits).within());
   limits.max_acceleration = 3.999;
@@ -81,16 +78,39 @@ TEST(FlightLimits, WhatIsAboveAtTheStartMayComeDown) {
   EXPECT_FALSE(use_of_limits(path_of({{0, {0, 0, 0}}, {1, {5, 0, 3.1}}}), limits).within());
 }
 
-// Of a second at 2 m/s and a second at 3 m/s the last 0.01 s of the first are left.
+// Of a second at 2 m/s and a second at 3 m/s the last 0.01 s of the first are left, or the first 0.01 s of the second.
 TEST(FlightLimits, ACutStepCountsAsAWholeOne) {
-  const base::TimedPath path = path_of({{0, {0, 0, 0}}, {0.01, {0.02, 0, 0}}, {1.01, {3.02, 0, 0}}});
   FlightLimits limits;
   limits.max_acceleration = 1.0;
   limits.velocity = {2.49, 0, 0};  // of 1 m/s² from 1.5 to 2.5 m/s
   limits.rests = false;
-  EXPECT_GT(use_of_limits(path, limits).acceleration, 90.0);
+  EXPECT_NEAR(use_of_limits(path_of({{0, {0, 0, 0}}, {0.01, {0.02, 0, 0}}, {1.01, {3.02, 0, 0}}}), limits).acceleration,
+              1.0, 1e-12);
+  limits.velocity = {1.5, 0, 0};
+  EXPECT_NEAR(use_of_limits(path_of({{0, {0, 0, 0}}, {1, {2, 0, 0}}, {1.01, {2.03, 0, 0}}}), limits).acceleration, 1.0,
+              1e-12);
+  limits.velocity = {1.99, 0, 0};  // one step's last 0.01 s alone, from 1.5 m/s on
+  const base::TimedPath alone = path_of({{0, {0, 0, 0}}, {0.01, {0.02, 0, 0}}});
+  EXPECT_NEAR(use_of_limits(alone, limits).acceleration, 2.0, 1e-9);
   limits.step = 1.0;
-  EXPECT_NEAR(use_of_limits(path, limits).acceleration, 1.0, 1e-12);
+  EXPECT_NEAR(use_of_limits(alone, limits).acceleration, 0.02, 1e-9);
+}
+
+// No other segment is longer than it is: a corner of short segments is sharp at its start, inside, and at its end.
+TEST(FlightLimits, ShortSegmentsInsideCountAsTheyAre) {
+  FlightLimits limits;
+  limits.max_acceleration = 1.0;
+  limits.velocity = {1, 0, 0};
+  limits.step = 1.0;
+  limits.rests = false;
+  for (std::size_t corner = 2; corner < 9; ++corner) {
+    base::TimedPath path = path_of({{0, {0, 0, 0}}});
+    for (std::size_t i = 1; i < 10; ++i) {
+      const Vec3 way = i < corner ? Vec3(0.1, 0, 0) : Vec3(0, 0.1, 0);
+      path.push_back({0.1 * static_cast<double>(i), path.back().position + way, Vec3::Zero(), Vec3::Zero()});
+    }
+    EXPECT_NEAR(use_of_limits(path, limits).acceleration, 10.0 * std::sqrt(2.0), 1e-9) << corner;
+  }
 }
 
 TEST(FlightLimits, NothingIsAskedForByNoWay) {
