@@ -2,6 +2,7 @@
 #include "planner/horizon/open_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -16,20 +17,8 @@ namespace {
 
 constexpr double kJoint = 1e-9;  // s, within which two instants are the same
 
-/// What else counts in flight decides here between paths of nearly equal length alone. So much of it is left that a
-/// second lost, or a metre aside, weighs some centimetres of length; of what is kept, that a millimetre in a metre
-/// counts.
-constexpr double kTimeLeft = 0.04;
-constexpr double kDeviationLeft = 0.07;
-constexpr double kSlackLeft = 0.01;
-
-base::HorizonSettings for_shortest(base::HorizonSettings settings) {
-  settings.time_weight *= kTimeLeft;
-  settings.deviation_weight *= kDeviationLeft;
-  settings.length_band *= kSlackLeft;
-  settings.keep_ratio *= kSlackLeft;
-  return settings;
-}
+constexpr double kSecond = 0.05;    // m, of length, for which a path may take a second more
+constexpr double kTimeGiven = 1.6;  // times a path's own, for it to be pulled tight; more leave hardly less length
 
 verify::Verification verify_whole(const base::TimedPath& path, const OpenLoopRequest& request, double step) {
   verify::Verification whole = verify_until(path, request.path, base::kInfinity);
@@ -56,6 +45,15 @@ void append(const base::TimedPath& part, double t, double keep, base::TimedPath&
   if (t + keep > whole.back().t + kJoint) whole.push_back({t + keep, end.position, end.velocity, end.acceleration});
 }
 
+void judge(const OpenLoopRequest& request, double step, verify::Plan& plan) {
+  plan.verification = verify_whole(plan.path, request, step);
+  plan.status = verify::PlanStatus::kBlocked;
+  if (!plan.verification.free()) return;
+  const bool reaches = arrives(plan.path, request.path) && plan.verification.flyable();
+  plan.status = reaches ? verify::PlanStatus::kReaches : verify::PlanStatus::kProgresses;
+}
+
+/// Plans one part after the other until the target, the time limit or the end of the budget.
 verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed,
                      const base::Budget& budget, base::WorkerPool& pool) {
   verify::Plan whole;
@@ -97,26 +95,72 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     previous = base::remainder(part.path, keep);
     for (base::TimedPoint& point : previous) point.t -= keep;
   }
-  whole.verification = verify_whole(whole.path, request, planner.settings().step);
-  whole.status = verify::PlanStatus::kBlocked;
-  if (whole.verification.free()) {
-    const bool reaches = arrives(whole.path, request.path) && whole.verification.flyable();
-    whole.status = reaches ? verify::PlanStatus::kReaches : verify::PlanStatus::kProgresses;
-  }
+  judge(request, planner.settings().step, whole);
   return whole;
 }
 
-/// Where the path arrives and pulled tight it is as good and shorter, that is the path.
+/// The same way in so many times the time. A path that begins and ends at rest does so still.
+base::TimedPath retimed(base::TimedPath path, double times) {
+  for (base::TimedPoint& point : path) {
+    point.t *= times;
+    point.velocity /= times;
+    point.acceleration /= times * times;
+  }
+  return path;
+}
+
+/// How many times its time a path needs to be flown with no more than the planned acceleration; below 1 it has more.
+double time_needed(const base::TimedPath& path, const PathRequest& request, const base::HorizonSettings& settings) {
+  const verify::LimitsUse use = use_of_limits(path, request, settings.step);
+  const double most = request.vehicle.max_acceleration;
+  const double acceleration = use.acceleration * most / settings.planned_acceleration(most);
+  return std::max({use.speed, use.climb, std::sqrt(acceleration)});
+}
+
+/// What decides between plans that arrive, m: length, and time only where it costs hardly any.
+double cost(const base::TimedPath& path) {
+  return base::path_length(path) + kSecond * path.back().t;
+}
+
+/// Where the path arrives, and pulled tight is as good and costs less, or reaches where it did not, that is the path. A
+/// band that is given time bends more; from rest it has as much as it needs.
 void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& settings, verify::Plan& plan) {
-  if (plan.status != verify::PlanStatus::kReaches) return;
-  base::TimedPath tight =
-      elastic_band(plan.path, request.path, settings.planned_acceleration(request.path.vehicle.max_acceleration));
-  const verify::Verification verification = verify_whole(tight, request, settings.step);
-  if (!verification.free() || !verification.flyable() || base::path_length(tight) >= base::path_length(plan.path) ||
-      verification.min_clearance < std::min(request.path.margin, plan.verification.min_clearance))
-    return;
-  plan.path = std::move(tight);
-  plan.verification = verification;
+  const PathRequest& from = request.path;
+  if (plan.path.size() < 3 || !arrives(plan.path, from)) return;
+  const double acceleration = settings.planned_acceleration(from.vehicle.max_acceleration);
+  const double time_limit = std::max(request.time_limit, plan.path.back().t);
+  const double clearance = plan.status == verify::PlanStatus::kReaches
+                               ? std::min(from.margin, plan.verification.min_clearance)
+                               : from.margin;
+  const auto offer = [&](base::TimedPath tight) {
+    if (tight.back().t > time_limit) return;
+    verify::Plan offered;
+    offered.path = std::move(tight);
+    judge(request, settings.step, offered);
+    if (offered.status != verify::PlanStatus::kReaches || offered.verification.min_clearance < clearance) return;
+    if (plan.status == verify::PlanStatus::kReaches && cost(offered.path) >= cost(plan.path)) return;
+    plan.path = std::move(offered.path);
+    plan.verification = offered.verification;
+    plan.status = offered.status;
+  };
+  const base::TimedPath given = plan.path;
+  offer(elastic_band(given, from, acceleration));
+  if (!from.velocity.isZero()) return;
+  const base::TimedPath slow = elastic_band(retimed(given, kTimeGiven), from, acceleration);
+  offer(slow);
+  offer(retimed(slow, time_needed(slow, from, settings)));
+}
+
+/// The way that would be flown if there were nothing, pulled tight among what there is.
+verify::Plan straight_way(HorizonPlanner& planner, const OpenLoopRequest& request, std::uint64_t seed,
+                          const base::Budget& budget, base::WorkerPool& pool) {
+  OpenLoopRequest empty = request;
+  empty.path.tracks = {};
+  empty.path.paths = {};
+  verify::Plan plan = attempt(planner, empty, seed, budget, pool);
+  judge(request, planner.settings().step, plan);
+  pull_tight(request, planner.settings(), plan);
+  return plan;
 }
 
 }  // namespace
@@ -133,23 +177,21 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
     plan.status = verify::PlanStatus::kStartBlocked;
     return plan;
   }
-  HorizonPlanner patient(for_shortest(settings), optimizer, make);
-  verify::Plan plan = attempt(patient, request, seed, budget, pool);
+  HorizonPlanner planner(settings, optimizer, make);
+  verify::Plan plan = attempt(planner, request, seed, budget, pool);
   if (plan.status == verify::PlanStatus::kInvalid) return plan;
   pull_tight(request, settings, plan);
-  if (budget.expired()) return plan;
-  HorizonPlanner eager(settings, optimizer, make);
-  verify::Plan other = attempt(eager, request, seed, budget, pool);
-  pull_tight(request, settings, other);
+  const verify::Plan straight = straight_way(planner, request, seed, budget, pool);
   const auto worth = [&](const verify::Plan& p) {
     const double left = (p.path.back().position - request.path.target).norm();
-    return std::tuple(p.status == verify::PlanStatus::kReaches, p.verification.free(), -left,
-                      -base::path_length(p.path));
+    return std::tuple(p.status == verify::PlanStatus::kReaches, p.verification.free(), -left, -cost(p.path));
   };
-  other.evaluations += plan.evaluations;
-  plan.evaluations = other.evaluations;
-  other.deadline_reached = plan.deadline_reached || other.deadline_reached;
-  return worth(other) > worth(plan) ? other : plan;
+  if (worth(straight) > worth(plan)) {
+    plan.path = straight.path;
+    plan.verification = straight.verification;
+    plan.status = straight.status;
+  }
+  return plan;
 }
 
 }  // namespace jink::planner::horizon

@@ -20,12 +20,11 @@ struct OpenLoopRequest {
   double commit = 0.5;      ///< how much of each plan is kept before planning on: whole steps; above 0
 };
 
-/// One plan after the other along the path itself, the obstacles extrapolated from t = 0. It is planned twice. Once the
-/// shortest path is asked for: lost time and deviation from unobstructed flight only decide between paths of nearly
-/// equal length; a vehicle that may wait for nothing can wait too long, and go round for too long. And once with
-/// `settings` as they are. What arrives is pulled tight (elastic_band()). Of the two the better one is returned: the
-/// one that arrives, then the one that is free, then the one that comes nearer, then the shorter one. `budget` is that
-/// of each plan, its deadline that of all.
+/// One plan after the other along the path itself, the obstacles extrapolated from t = 0. What arrives is pulled tight
+/// (elastic_band()), with as much time as it needs to bend. So is the way that would be flown if there were nothing.
+/// Of the two the better one is returned: the one that arrives, then the one that is free, then the one that comes
+/// nearer, then the shorter one, 0.05 m of length for a second. `budget` is that of each plan, its deadline that of
+/// all.
 ///
 /// The finished path is verified: kReaches only where all of it is free and within the vehicle's limits and it ends at
 /// the target within the time limit, kInvalid and no path for a request that holds what is none. `make` and what is

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "planner/base/random.hpp"
@@ -97,24 +98,32 @@ TEST(ElasticBand, StaysInTheVolume) {
     EXPECT_TRUE(r.volume.contains(point.position, 1e-3));
 }
 
-// As `jink plan` plans: the table has 500 of each (tools/lab/bench/tangent.cpp).
-TEST(OpenLoopPlan, IsNearlyTheShortestRoundASphere) {
-  base::RandomStream random(7);
+/// As `jink plan` plans among resting spheres, grown by the vehicle's radius.
+verify::Plan plan_among(const std::vector<std::pair<Vec3, double>>& spheres) {
+  std::vector<base::Track> tracks;
+  for (const auto& [center, radius] : spheres) {
+    tracks.push_back({});
+    tracks.back().id = tracks.size();
+    tracks.back().position = center;
+    tracks.back().radius = radius - base::VehicleLimits{}.radius;
+  }
+  OpenLoopRequest request;
+  request.path = across_from_rest(tracks);
+  request.time_limit = 60.0;
   base::WorkerPool pool(1);
   const base::HorizonSettings settings;
+  return plan_open_loop(settings, {}, request, 1, {settings.generations}, pool);
+}
+
+// The table of docs/planner.md has 500 of each (tools/lab/bench/tangent.cpp).
+TEST(OpenLoopPlan, IsNearlyTheShortestRoundASphere) {
+  base::RandomStream random(7);
   double sum = 0.0;
   constexpr int kCases = 12;
   for (int n = 0; n < kCases; ++n) {
     const double radius = random.uniform(1.0, 4.0);
     const Vec3 center(random.uniform(6.0, 14.0), random.uniform(-0.9, 0.9) * radius, 0.0);
-    base::Track track;
-    track.position = center;
-    track.radius = radius - base::VehicleLimits{}.radius;
-    const std::vector<base::Track> tracks{track};
-    OpenLoopRequest request;
-    request.path = across_from_rest(tracks);
-    request.time_limit = 60.0;
-    const verify::Plan plan = plan_open_loop(settings, {}, request, 1, {settings.generations}, pool);
+    const verify::Plan plan = plan_among({{center, radius}});
     ASSERT_EQ(plan.status, verify::PlanStatus::kReaches);
     const double a = center.norm();
     const double b = (kEnd - center).norm();
@@ -127,6 +136,32 @@ TEST(OpenLoopPlan, IsNearlyTheShortestRoundASphere) {
     sum += excess;
   }
   EXPECT_LT(sum / kCases, 0.01);
+}
+
+// Round the first of two the search prefers a side from which the way round the second is long, or there is no time to
+// bend as sharply as the shortest way does. The exact lengths are those of tools/lab/bench/tangent.cpp.
+TEST(OpenLoopPlan, IsNearlyTheShortestRoundTwoSpheres) {
+  const double first = base::path_length(plan_among({{{5.69, 0.87, 1.20}, 2.78}, {{12.42, -0.37, -0.47}, 3.06}}).path);
+  EXPECT_LT(first / 21.04, 1.03);
+  const double second = base::path_length(plan_among({{{5.71, 1.72, -0.43}, 2.23}, {{13.28, -0.28, 0.16}, 2.97}}).path);
+  EXPECT_LT(second / 20.91, 1.03);
+}
+
+// Something crosses the way: pulled tight, with more time or less, the plan is still clear of it, and in time.
+TEST(OpenLoopPlan, IsPulledTightWhereWhatMovesAllowsIt) {
+  base::WorkerPool pool(1);
+  const base::HorizonSettings settings;
+  for (int n = 0; n < 8; ++n) {
+    OpenLoopRequest request;
+    const std::vector<base::Track> tracks{ball({6.0 + n, -9.0, 0.0}, {0.0, 3.0, 0.0})};
+    request.path = across_from_rest(tracks);
+    request.time_limit = 9.0;
+    const verify::Plan plan = plan_open_loop(settings, {}, request, 1, {settings.generations}, pool);
+    ASSERT_EQ(plan.status, verify::PlanStatus::kReaches) << n;
+    EXPECT_LE(plan.path.back().t, request.time_limit) << n;
+    EXPECT_GE(plan.verification.min_clearance, request.path.margin - 1e-9) << n;
+    EXPECT_LT(base::path_length(plan.path), 1.05 * kEnd.norm()) << n;
+  }
 }
 
 }  // namespace
