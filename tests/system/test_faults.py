@@ -35,8 +35,9 @@ SCENARIO = {
         {"radius": 0.5, "position": [6, 1.4, 1.5]},                           # stands beside it
         {"radius": 0.4, "motion": {"type": "sine", "center": [3, 3, 2], "amplitude": [1, 0, 0], "frequency_hz": [0.3, 0, 0],
                                    "phase": [0, 0, 0]}}]}
-# Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile.
-UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [7, -4, 1.5]},
+# Nothing crosses or stands where a vehicle coasts to that jink does not steer meanwhile: up to 7.7 m, 3.3 s after it set
+# out.
+UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [9.2, -4, 1.5]},
                            {**SCENARIO["obstacles"][1], "position": [6, 2.4, 1.5]}, SCENARIO["obstacles"][2]]}
 # Nothing is where a vehicle gets that does not know where it is.
 ASIDE = {"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}
