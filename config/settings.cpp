@@ -115,6 +115,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"gaps", &HorizonSettings::gaps, closed(0, 1000)},
     {"gap_spacing", &HorizonSettings::gap_spacing, closed(0.05, 100)},
     {"keep_ratio", &HorizonSettings::keep_ratio, below(0, 1)},
+    {"search_ratio", &HorizonSettings::search_ratio, below(0, 1)},
     {"keep_limits", &HorizonSettings::keep_limits, closed(0, 100)},
 };
 

@@ -64,10 +64,10 @@ struct HorizonSettings {
   int waypoints = 6;                 ///< K
   double time = 6.0;                 ///< looked ahead; the rest is straight
   double step = 0.1;                 ///< between points of the timed path
-  int slaves = 4;                    ///< m, as OptimizerSettings::slaves
+  int slaves = 2;                    ///< m, as OptimizerSettings::slaves
   int sharing = 3;                   ///< l, as OptimizerSettings::sharing
-  int population = 48;               ///< n_pop, as OptimizerSettings::population
-  int generations = 100;             ///< budget of one plan in virtual time, and the upper bound in real time
+  int population = 24;               ///< n_pop, as OptimizerSettings::population
+  int generations = 200;             ///< budget of one plan in virtual time, and the upper bound in real time
   double deadline_ms = 6.0;          ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
   double back_range = 2.0;           ///< how far they may fall back behind the start
@@ -104,7 +104,8 @@ struct HorizonSettings {
   int encounters = 3;              ///< the first obstacles met that they lead past
   int gaps = 3;                    ///< that they lead through, at each of the times at which they do
   double gap_spacing = 0.5;        ///< between two of the places across the path looked at for a gap
-  double keep_ratio = 0.05;        ///< a previous plan is kept unless a new one is better by this fraction
+  double keep_ratio = 0.05;        ///< a previous plan is kept unless one that goes another way is better by this
+  double search_ratio = 0.01;      ///< a previous plan that is nearer to unobstructed flight is kept without a search
   double keep_limits = 1.1;        ///< times the limits, up to which it counts: who is beside it is led back to it
 
   static constexpr int kMostSteps = 256;  ///< of a horizon

@@ -59,6 +59,16 @@ int affordable_generations(const base::Budget& budget, double pace, double share
   return std::clamp(static_cast<int>(std::min(share * left.count() / pace, 1e6)), 1, budget.generations);
 }
 
+/// The farthest that two paths are apart at equal times up to `until`, at the points of the first, m.
+double largest_distance(const base::TimedPath& path, const base::TimedPath& other, double until) {
+  double most = 0.0;
+  for (const base::TimedPoint& point : path) {
+    if (point.t > until) break;
+    most = std::max(most, (point.position - base::sample(other, point.t).position).norm());
+  }
+  return most;
+}
+
 }  // namespace
 
 std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
@@ -151,7 +161,7 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& pr
   if (ideal.violation == 0.0 && ideal.f[2] == 0.0 && settle(plan)) return plan;
   if (previous.empty()) return std::nullopt;
   const optimizer::Cost cost = problem.cost_of(previous);
-  const double slack = settings_.keep_ratio;
+  const double slack = settings_.search_ratio;
   if (cost.violation > 0.0 || cost.f[0] > ideal.f[0] * (1.0 + slack) || cost.f[2] > slack) return std::nullopt;
   verify::Plan kept;
   kept.path = base::remainder(previous, 0.0);
@@ -170,6 +180,7 @@ verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& req
   const optimizer::Front& front = optimizer_->run(problem, initial_, random.seed, random.stream, affordable, pool);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   pace = took.count() / optimizer_->report().generations;
+  front_ = &front;
   verify::Plan plan = choose(problem, request, front);
   plan.evaluations = optimizer_->report().evaluations;
   plan.generations = optimizer_->report().generations;
@@ -221,6 +232,30 @@ verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathReques
   return best;
 }
 
+// The shortest of what the last search found that is shorter than the previous plan, no less clear, and goes its way:
+// to hold on to what was begun matters between ways, not along one. Where two paths that keep the margin pass something
+// on different sides, there is a time at which it is between them, and each is as far from it as that.
+std::optional<verify::Plan> HorizonPlanner::improved(const PathProblem& problem, const PathRequest& request,
+                                                     const base::TimedPath& previous,
+                                                     const optimizer::Cost& cost) const {
+  const double other_way = 2.0 * (request.vehicle.radius + request.margin);
+  const std::vector<optimizer::Cost>& found = front_->costs;
+  std::vector<std::size_t> better;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].violation == 0.0 && found[i].f[0] < cost.f[0] && found[i].f[2] <= cost.f[2]) better.push_back(i);
+  }
+  std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) { return found[a].f[0] < found[b].f[0]; });
+  better.resize(std::min(better.size(), static_cast<std::size_t>(settings_.candidates)));
+  for (const std::size_t i : better) {
+    verify::Plan plan;
+    plan.path = problem.motion(front_->solution(i));
+    if (largest_distance(plan.path, previous, problem.horizon()) >= other_way) continue;
+    plan.verification = verify_until(plan.path, request, problem.horizon());
+    if (plan.verification.free() && plan.verification.min_clearance >= request.margin) return plan;
+  }
+  return std::nullopt;
+}
+
 void HorizonPlanner::keep_previous(const PathProblem& problem, const PathRequest& request,
                                    const base::TimedPath& previous, verify::Plan& plan) const {
   const optimizer::Cost old_cost = problem.cost_of(previous);
@@ -241,6 +276,14 @@ void HorizonPlanner::keep_previous(const PathProblem& problem, const PathRequest
     keep = is_safer(old.verification, plan.verification);
   }
   if (!keep) return;
+  // A stuck vehicle holds on to what leads on: what is shorter waits.
+  if (!request.stuck && old_cost.violation == 0.0 && old.verification.free()) {
+    if (std::optional<verify::Plan> better = improved(problem, request, old.path, old_cost)) {
+      plan.path = std::move(better->path);
+      plan.verification = better->verification;
+      return;
+    }
+  }
   plan.path = std::move(old.path);
   plan.verification = old.verification;
   plan.kept_previous = true;

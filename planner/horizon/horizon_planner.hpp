@@ -85,12 +85,16 @@ class HorizonPlanner {
   [[nodiscard]] verify::Plan choose(const PathProblem& problem, const PathRequest& request,
                                     const optimizer::Front& front) const;
   [[nodiscard]] std::vector<optimizer::Cost> quantized(std::span<const optimizer::Cost> costs) const;
+  [[nodiscard]] std::optional<verify::Plan> improved(const PathProblem& problem, const PathRequest& request,
+                                                     const base::TimedPath& previous,
+                                                     const optimizer::Cost& cost) const;
   void keep_previous(const PathProblem& problem, const PathRequest& request, const base::TimedPath& previous,
                      verify::Plan& plan) const;
 
   base::HorizonSettings settings_;
   std::array<Problems, 3> problems_;  // by Extent
   std::unique_ptr<optimizer::Optimizer> optimizer_;
+  const optimizer::Front* front_ = nullptr;  // of the last search; the optimizer's
   std::vector<double> initial_;
 };
 

@@ -132,7 +132,8 @@ TEST(LoadSettings, RefusesBadOverrides) {
       {"", "has no '='"},
       {"optimizer.slaves=51", "key 'optimizer.population': value '50' is smaller than the number of slaves"},
       {"optimizer.wep_max=0.1", "key 'optimizer.wep_min': value '0.2' is above wep_max; not in [0, 0.1]"},
-      {"horizon.population=3", "value '3' is smaller than the number of slaves; not in [4, 100000]"},
+      {"horizon.slaves=25",
+       "key 'horizon.population': value '24' is smaller than the number of slaves; not in [25, 100000]"},
       {"horizon.step=7", "value '7' is above time; not in [0.001, 6]"},
   };
   for (const Case& bad : cases) {

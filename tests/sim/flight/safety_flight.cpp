@@ -17,7 +17,7 @@ constexpr double kReady = 6.0;       // s, from when on the autopilot may be arm
 constexpr double kPlansFrom = 12.0;  // s, about when plans are flown
 constexpr double kAtSpeed = 1.0;     // s later, when it flies at its cruise speed
 // s, from the climb's beginning, from which the time limit counts.
-constexpr double kClimb = 5.0, kToTarget = 11.5, kToLanding = 12.7;
+constexpr double kClimb = 5.0, kToTarget = 11.8, kToLanding = 13.2;
 constexpr double kLeast = 0.01;      // s, of a time limit
 constexpr double kPlanTakes = 0.02;  // s
 
