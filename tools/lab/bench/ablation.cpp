@@ -132,7 +132,7 @@ std::vector<Variant> horizon_variants(const planner::base::HorizonSettings& sett
   planner::base::OptimizerSettings& momvo = add("1 slave, no sharing");
   momvo.slaves = 1;
   momvo.sharing = 0;
-  add("2 slaves").slaves = 2;
+  add("4 slaves").slaves = 4;
   add("8 slaves").slaves = 8;
   add("no sharing").sharing = 0;
   add("half the generations").iterations /= 2;
