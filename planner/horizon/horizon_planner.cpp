@@ -145,8 +145,8 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
 }
 
 // No path is shorter than unobstructed flight, none has less of the last objective than nothing: where unobstructed
-// flight has both it is the plan, and where the previous plan comes so near to it that keep_previous() would keep it
-// whatever a search found, it is kept.
+// flight has both it is the plan, and where the previous plan comes so near to it that a search has little to find, it
+// is kept.
 std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& problem, const PathRequest& request,
                                                            const base::TimedPath& previous) const {
   verify::Plan plan;
@@ -277,16 +277,13 @@ void HorizonPlanner::keep_previous(const PathProblem& problem, const PathRequest
   }
   if (!keep) return;
   // A stuck vehicle holds on to what leads on: what is shorter waits.
-  if (!request.stuck && old_cost.violation == 0.0 && old.verification.free()) {
-    if (std::optional<verify::Plan> better = improved(problem, request, old.path, old_cost)) {
-      plan.path = std::move(better->path);
-      plan.verification = better->verification;
-      return;
-    }
-  }
-  plan.path = std::move(old.path);
-  plan.verification = old.verification;
-  plan.kept_previous = true;
+  std::optional<verify::Plan> better;
+  if (!request.stuck && old_cost.violation == 0.0 && old.verification.free())
+    better = improved(problem, request, old.path, old_cost);
+  verify::Plan& flown = better ? *better : old;
+  plan.path = std::move(flown.path);
+  plan.verification = flown.verification;
+  plan.kept_previous = !better;
 }
 
 }  // namespace jink::planner::horizon

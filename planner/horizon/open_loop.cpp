@@ -45,6 +45,7 @@ void append(const base::TimedPath& part, double t, double keep, base::TimedPath&
   if (t + keep > whole.back().t + kJoint) whole.push_back({t + keep, end.position, end.velocity, end.acceleration});
 }
 
+/// Verifies the plan's path, all of it, and says what it amounts to.
 void judge(const OpenLoopRequest& request, double step, verify::Plan& plan) {
   plan.verification = verify_whole(plan.path, request, step);
   plan.status = verify::PlanStatus::kBlocked;
@@ -181,6 +182,7 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
   verify::Plan plan = attempt(planner, request, seed, budget, pool);
   if (plan.status == verify::PlanStatus::kInvalid) return plan;
   pull_tight(request, settings, plan);
+  if (budget.expired()) return plan;
   const verify::Plan straight = straight_way(planner, request, seed, budget, pool);
   const auto worth = [&](const verify::Plan& p) {
     const double left = (p.path.back().position - request.path.target).norm();

@@ -157,11 +157,11 @@ TEST(Openings, AreWhereTheWayLeadsOn) {
 
 // To wait for a wall to go away is for ever cheaper than the way to a hole far aside, until waiting has not helped.
 TEST(Openings, AreTakenByAVehicleThatIsStuck) {
-  const std::vector<base::Track> tracks = wall({{3.2, 4.5}});
+  const std::vector<base::Track> tracks = wall({{2.6, 4.5}});
   PathRequest r = before_the_wall(tracks);
-  r.position = {5, -3.5, 1.5};
+  r.position = {5, -2.8, 1.5};
   r.velocity = Vec3::Zero();
-  r.target = {11, -3.5, 1.5};
+  r.target = {11, -2.8, 1.5};
   r.margin = base::HorizonSettings{}.margin;
   HorizonPlanner planner{base::HorizonSettings{}};
   base::WorkerPool pool(2);
@@ -172,7 +172,7 @@ TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   };
   EXPECT_LT(reaches(), 8.0);
   r.stuck = true;
-  EXPECT_GT(reaches(), 9.0);  // behind the wall
+  EXPECT_GT(reaches(), 10.0);
 }
 
 }  // namespace
