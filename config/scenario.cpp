@@ -15,6 +15,8 @@ constexpr Range kSpeed = within(1e3);
 constexpr Range kAcceleration = within(1e3);
 constexpr Range kSize = above(0, 1e3);
 constexpr Range kAngle = within(1e6);
+constexpr Range kTurn = within(1e3);      // rad
+constexpr Range kTurnRate = within(100);  // rad/s
 constexpr std::size_t kMostObstacles = 10000;
 constexpr std::size_t kMostPoints = 10000;
 constexpr std::array<std::string_view, 2> kEstimates = {"px4", "none"};
@@ -26,7 +28,7 @@ Vec3 read_edges(const Value& value) {
 }
 
 Shape read_shape(const Map& obstacle) {
-  const std::array<std::string_view, 3> kinds = {"radius", "box", "vertices"};
+  const std::array<std::string_view, 5> kinds = {"radius", "box", "cylinder", "capsule", "vertices"};
   std::vector<std::string_view> given;
   for (const std::string_view kind : kinds) {
     if (obstacle.has(kind)) given.push_back(kind);
@@ -37,6 +39,14 @@ Shape read_shape(const Map& obstacle) {
   }
   if (const auto radius = obstacle.find("radius")) return SphereShape{radius->number(kSize)};
   if (const auto box = obstacle.find("box")) return BoxShape{read_edges(*box)};
+  if (const auto cylinder = obstacle.find("cylinder")) {
+    const Map map(*cylinder, {"radius", "height"});
+    return CylinderShape{map.number("radius", kSize), map.number("height", kSize)};
+  }
+  if (const auto capsule = obstacle.find("capsule")) {
+    const Map map(*capsule, {"radius", "a", "b"});
+    return CapsuleShape{map.number("radius", kSize), map.vec3("a", within(1e3)), map.vec3("b", within(1e3))};
+  }
   VertexShape shape;
   const Value vertices = obstacle.at("vertices", "");
   for (const Value& vertex : vertices.list(1, kMostPoints)) shape.vertices.push_back(vertex.vec3(within(1e3)));
@@ -138,6 +148,15 @@ Motion read_motion(const Map& obstacle) {
   motion.velocity = obstacle.vec3_or("velocity", kSpeed, Vec3::Zero());
   motion.acceleration = obstacle.vec3_or("acceleration", kAcceleration, Vec3::Zero());
   return motion;
+}
+
+void read_turn(const Map& map, Obstacle& obstacle) {
+  for (const std::string_view key : {"orientation", "yaw_rate"}) {
+    if (const auto given = map.find(key); given && std::holds_alternative<SphereShape>(obstacle.shape))
+      given->fail("stands beside radius; a sphere is the same however it is turned");
+  }
+  obstacle.orientation = map.vec3_or("orientation", kTurn, obstacle.orientation);
+  obstacle.yaw_rate = map.number_or("yaw_rate", kTurnRate, obstacle.yaw_rate);
 }
 
 Sensing read_sensing(const Value& value) {
@@ -250,9 +269,11 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
   scenario.time_limit = map.number_or("time_limit", above(0, 1e6), default_time_limit(scenario));
   if (const auto sensing = map.find("sensing")) scenario.sensing = read_sensing(*sensing);
   for (const Value& item : map.at("obstacles", "a list, [] for none").list(0, kMostObstacles)) {
-    const Map obstacle(item, {"radius", "box", "vertices", "position", "velocity", "acceleration", "motion"});
+    const Map obstacle(item, {"radius", "box", "cylinder", "capsule", "vertices", "orientation", "yaw_rate", "position",
+                              "velocity", "acceleration", "motion"});
     Shape shape = read_shape(obstacle);
     scenario.obstacles.push_back({std::move(shape), read_motion(obstacle)});
+    read_turn(obstacle, scenario.obstacles.back());
   }
   if (const auto further = map.find("vehicles")) scenario.vehicles = read_further(*further, scenario, file, vehicles);
   if (!scenario.vehicles.empty() && scenario.sensing.sensed_from == SensedFrom::kVehicle)

@@ -18,17 +18,30 @@ struct SphereShape {
   double radius = 0.0;
   bool operator==(const SphereShape&) const = default;
 };
-/// Axis-aligned, centred on the moving reference point; edge lengths.
+/// Centred on the moving reference point; edge lengths along its own axes.
 struct BoxShape {
   Vec3 edges = Vec3::Zero();
   bool operator==(const BoxShape&) const = default;
+};
+/// Centred on the moving reference point, about its own z.
+struct CylinderShape {
+  double radius = 0.0;
+  double height = 0.0;
+  bool operator==(const CylinderShape&) const = default;
+};
+/// All within the radius of a line, whose ends are relative to the moving reference point, along its own axes.
+struct CapsuleShape {
+  double radius = 0.0;
+  Vec3 a = Vec3::Zero();
+  Vec3 b = Vec3::Zero();
+  bool operator==(const CapsuleShape&) const = default;
 };
 /// The convex hull of these points, relative to the moving reference point; at least one, and they may be degenerate.
 struct VertexShape {
   std::vector<Vec3> vertices;
   bool operator==(const VertexShape&) const = default;
 };
-using Shape = std::variant<SphereShape, BoxShape, VertexShape>;
+using Shape = std::variant<SphereShape, BoxShape, CylinderShape, CapsuleShape, VertexShape>;
 
 /// Constant acceleration, [Paper] Eq. (4)-(7) in exact form.
 struct LinearMotion {
@@ -72,6 +85,8 @@ using Motion = std::variant<LinearMotion, TrefoilMotion, SineMotion, BounceMotio
 struct Obstacle {
   Shape shape;
   Motion motion;
+  Vec3 orientation = Vec3::Zero();  ///< yaw, pitch, roll of its own axes at t = 0, rad: Rz(yaw) Ry(pitch) Rx(roll)
+  double yaw_rate = 0.0;            ///< rad/s, about the vertical through the reference point
   bool operator==(const Obstacle&) const = default;
 };
 
@@ -137,13 +152,14 @@ struct Scenario {
 /// beside the scenario's folder, then the project's own (config_folder() in config/settings.hpp).
 ///
 /// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
-/// velocity and acceleration of a linear one. Optional: time_limit, world (with both min and max), sensing and each of
+/// velocity and acceleration of a linear one. An obstacle has exactly one of radius, box, cylinder (radius, height),
+/// capsule (radius, a, b) and vertices. Optional: orientation and yaw_rate of an obstacle that is no sphere, time_limit, world (with both min and max), sensing and each of
 /// its keys, vehicles (further ones, at most 9, each with start and target, and vehicle where it is another one), wind
 /// and each of its keys, estimate (px4, the default, none, or a map of any of its keys), faults (a list, at most 1000;
 /// kinds and keys as in config/faults.hpp). Checked: starts and targets lie in the world, and no two starts are above
 /// each other so that the vehicles would touch on the ground; a bounce starts between min and max, which may coincide
 /// only on an axis without velocity; waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds
-/// and accelerations 1e3 per axis, radius and edges 1e3, 10000 obstacles, 10000 points each.
+/// and accelerations 1e3 per axis, radius, height and edges 1e3, yaw_rate 100 rad/s, 10000 obstacles, 10000 points each.
 ///
 /// Throws ConfigError (config/error.hpp) for anything else: unreadable file, syntax, unknown, missing or repeated key,
 /// wrong type, value out of range, wrong format, unknown vehicle.

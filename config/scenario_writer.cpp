@@ -58,6 +58,12 @@ struct AddShape {
   FlowMap& map;
   void operator()(const SphereShape& sphere) const { map.add("radius", sphere.radius); }
   void operator()(const BoxShape& box) const { map.add("box", box.edges); }
+  void operator()(const CylinderShape& c) const {
+    map.add("cylinder", FlowMap().add("radius", c.radius).add("height", c.height).text());
+  }
+  void operator()(const CapsuleShape& c) const {
+    map.add("capsule", FlowMap().add("radius", c.radius).add("a", c.a).add("b", c.b).text());
+  }
   void operator()(const VertexShape& hull) const { map.add("vertices", list_of(hull.vertices)); }
 };
 
@@ -155,6 +161,7 @@ std::string to_yaml(const Scenario& scenario) {
   for (const Obstacle& obstacle : scenario.obstacles) {
     FlowMap map;
     std::visit(AddShape{map}, obstacle.shape);
+    map.add_unless(Vec3::Zero(), "orientation", obstacle.orientation).add_unless(0.0, "yaw_rate", obstacle.yaw_rate);
     std::visit(AddMotion{map}, obstacle.motion);
     out += "- " + map.text() + "\n";
   }

@@ -33,6 +33,7 @@ planner::geometry::KnownPath plain_path(const planner::base::Track& track, doubl
   planner::geometry::KnownPath path;
   path.id = track.id;
   path.radius = track.radius;
+  path.body = track.body;
   path.position_sigma = track.position_sigma;
   path.velocity_sigma = track.velocity_sigma;
   path.age = track.age;
@@ -108,6 +109,7 @@ Obstacles obstacles_of(std::span<const planner::base::Track> tracks, std::span<c
   for (const Forecast& forecast : forecasts) {
     if (forecast.track >= tracks.size()) continue;
     result.paths.push_back(to_path(forecast, horizon, step));
+    result.paths.back().body = tracks[forecast.track].body;
     const planner::base::Track& track = tracks[forecast.track];
     result.paths.back().id = track.id;
     if (!(forecast.plain_until < horizon)) continue;

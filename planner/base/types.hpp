@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace jink {
 
@@ -43,7 +44,20 @@ struct VehicleLimits {
   double damping = 0.0;           ///< of a commanded acceleration, that the autopilot takes off again; not learned
 };
 
-/// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion.
+class Solid;
+
+/// What an obstacle is within the sphere that encloses it, and how it is turned.
+struct Body {
+  std::shared_ptr<const Solid> solid;  ///< relative to the sphere's centre; none: all of the sphere
+  double yaw = 0.0;                    ///< about the vertical, counter-clockwise from above, rad
+  double yaw_rate = 0.0;               ///< rad/s, constant
+
+  /// The same body t seconds later.
+  [[nodiscard]] Body later(double t) const { return {solid, yaw + t * yaw_rate, yaw_rate}; }
+};
+
+/// One tracked obstacle, valid at the instant that its container states: a sphere in constant-acceleration motion, or a
+/// body in it.
 struct Track {
   std::uint64_t id = 0;              ///< as the writer of the track names it
   Vec3 position = Vec3::Zero();      ///< of the centre, ENU, m
@@ -53,6 +67,7 @@ struct Track {
   double position_sigma = 0.0;       ///< standard deviation of the position, per axis
   double velocity_sigma = 0.0;       ///< standard deviation of the velocity, per axis
   double age = 0.0;                  ///< time since the measurement that this is predicted from
+  Body body{};                       ///< in the sphere
 };
 
 }  // namespace jink::planner::base

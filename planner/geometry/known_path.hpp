@@ -9,7 +9,7 @@
 
 namespace jink::planner::geometry {
 
-/// A sphere on a timed path: it stands at the first point before that point's time, moves at constant velocity between
+/// A sphere, or a body in it, on a timed path: it stands at the first point before that point's time, moves at constant velocity between
 /// points (velocity and acceleration of the points are not read), and stays at the last point after that. What it does
 /// after the last point is not known, so from there on its uncertainty grows as that of a track whose acceleration is
 /// not known. That it keeps to the path at all is what `velocity_sigma` doubts, as it doubts a track's velocity.
@@ -23,6 +23,7 @@ struct KnownPath {
   double velocity_sigma = 0.0;     ///< growth of it with the time since the path was told and the time looked ahead
   double age = 0.0;                ///< time since the path was told
   double until = base::kInfinity;  ///< regarded up to then: later the other one gives way
+  base::Body body{};               ///< in the sphere, as it is at time 0
 
   /// Where its centre is at time t, ENU, m; t counts from `offset` on the points' clock. Precondition: a point.
   [[nodiscard]] Vec3 position(double t) const { return base::sample(points, t + offset).position; }

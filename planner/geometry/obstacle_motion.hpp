@@ -32,6 +32,7 @@ inline base::Track predict(const base::Track& track, double t, double trust = ba
   later.velocity = predict_velocity(track, t, trust);
   later.age += t;
   if (later.age > trust) later.acceleration = Vec3::Zero();
+  later.body.yaw += t * track.body.yaw_rate;
   return later;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/base/solid.hpp"
+
 namespace jink::planner::geometry {
 namespace {
 
@@ -28,10 +30,18 @@ bool is_valid(const base::VehicleLimits& vehicle) {
          is_amount(vehicle.drag) && is_amount(vehicle.damping);
 }
 
+bool is_valid(const base::Body& body, double radius) {
+  constexpr double kRounding = 1e-9;  // of the radius, and m
+  if (body.solid == nullptr) return true;
+  return std::abs(body.yaw) <= kTurned && std::abs(body.yaw_rate) <= kTurning &&
+         body.solid->reach() * std::abs(body.yaw_rate) <= kFastest &&
+         body.solid->reach() <= radius + kRounding * (1.0 + radius);
+}
+
 bool is_valid(const KnownPath& path) {
   return is_valid_path(path.points) && std::abs(path.offset) <= kLongest && is_amount(path.radius) &&
          is_amount(path.margin) && is_amount(path.position_sigma) && is_amount(path.velocity_sigma) &&
-         is_amount(path.age, kLongest) && !std::isnan(path.until);
+         is_amount(path.age, kLongest) && !std::isnan(path.until) && is_valid(path.body, path.radius);
 }
 
 bool is_valid_path(std::span<const base::TimedPoint> path) {

@@ -15,6 +15,8 @@ inline constexpr double kFarthest = 1e8;  ///< m, from the origin; of a length t
 inline constexpr double kFastest = 1e5;   ///< m/s
 inline constexpr double kHardest = 1e5;   ///< m/s²
 inline constexpr double kLongest = 1e10;  ///< s, from a clock's 0, which may be 1970
+inline constexpr double kTurned = 1e5;    ///< rad
+inline constexpr double kTurning = 1e3;   ///< rad/s
 
 /// A length, a time, or a standard deviation: not below 0, at most `most`. False for NaN, as all below.
 [[nodiscard]] constexpr bool is_amount(double value, double most = kFarthest) {
@@ -29,11 +31,13 @@ inline constexpr double kLongest = 1e10;  ///< s, from a clock's 0, which may be
 [[nodiscard]] bool is_valid(const base::Box& volume);
 /// Whether radius, drag and damping are not below 0, and all else above it.
 [[nodiscard]] bool is_valid(const base::VehicleLimits& vehicle);
+/// Whether it lies in its sphere of that radius, and turns about its centre at less than kFastest.
+[[nodiscard]] bool is_valid(const base::Body& body, double radius);
 /// Whether it is a body that moves: radius, standard deviations and age not below 0.
 [[nodiscard]] inline bool is_valid(const base::Track& track) {
   return is_within(track.position, kFarthest) && is_within(track.velocity, kFastest) &&
          is_within(track.acceleration, kHardest) && is_amount(track.radius) && is_amount(track.position_sigma) &&
-         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest);
+         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest) && is_valid(track.body, track.radius);
 }
 /// Whether it is a path, and its radius, margin, standard deviations and age are not below 0. O(points).
 [[nodiscard]] bool is_valid(const KnownPath& path);

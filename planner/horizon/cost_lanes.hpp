@@ -64,8 +64,13 @@ struct CostLanes {
       const double weight = scene.step / (0.5 + step * scene.step);  // what is near in time counts more
       for (const NearbyObstacle& obstacle : obstacles.during(step)) {
         if (bounds.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;
-        if (stretch.may_meet(obstacle, j))
-          clearance.add_obstacle(obstacle, stretch.places[j], stretch.places[j + 1], weight);
+        if (obstacle.solid >= 0) {
+          const NearbySolid& solid = obstacles.solid(obstacle);
+          if (stretch.may_meet(obstacle, solid, bounds))
+            clearance.add_solid(obstacle, solid, stretch.places[j], stretch.places[j + 1], weight);
+        } else if (stretch.may_meet(obstacle, j)) {
+          clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], weight);
+        }
       }
     }
   }

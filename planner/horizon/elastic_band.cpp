@@ -15,6 +15,7 @@ constexpr int kSweeps = 1200;
 constexpr int kRelaxed =
     900;  // sweeps of full tension; in those after that it fades, so that what bounds the band wins
 constexpr int kLookAgain = 50;           // sweeps after which the obstacles that are near are looked for again
+constexpr int kPlaces = 4;               // of a piece, between which a solid's nearest is looked for
 constexpr double kNearBy = 0.5;          // m, beyond what is kept, within which an obstacle counts as near
 constexpr double kOverRelaxation = 1.9;  // of each point's way: successive over-relaxation; 2 would not come to rest
 constexpr double kBeyond = 5e-3;         // m, kept beyond the margin, for what the sweeps leave over
@@ -24,7 +25,8 @@ constexpr double kSlowest = 0.3;         // m/s, as which a piece of no speed co
 struct Push {
   std::size_t k = 0;
   Vec3 from, to;          // its centre
-  double distance = 0.0;  // of the centres, kept
+  double distance = 0.0;  // of the centres, kept; of the surface, from a solid
+  PlacedSolid solid;      // in the middle of that time
 };
 
 class Band {
@@ -47,7 +49,7 @@ class Band {
       if (sweep % kLookAgain == 0) look_around();
       const double fading = sweep < kRelaxed ? 1.0 : static_cast<double>(kSweeps - sweep) / (kSweeps - kRelaxed);
       tighten(kOverRelaxation * fading);
-      for (const Push& push : pushes_) push_out(push);
+      for (const Push& push : pushes_) push.solid.is_none() ? push_out(push) : push_out_of_solid(push);
       for (std::size_t k = 0; k < p_.size(); ++k) straighten(k);
       for (std::size_t k = 1; k < p_.size(); ++k) flatten(k);
     }
@@ -68,22 +70,26 @@ class Band {
 
   void look_around() {
     pushes_.clear();
-    for_each_obstacle(request_, request_.margin + kBeyond,
-                      [&](double distance, double until, const auto& position, const auto& /*velocity*/) {
-                        add_pushes(distance, until, position);
-                      });
+    for_each_obstacle(request_, request_.margin + kBeyond, [&](const auto& obstacle) { add_pushes(obstacle); });
   }
 
-  /// Of one obstacle, for the pieces near which it comes before `until`.
-  template <typename Position>
-  void add_pushes(double distance, double until, const Position& position) {
-    Vec3 to = position(path_.front().t);
-    for (std::size_t k = 1; k < p_.size() && path_[k - 1].t < until; ++k) {
+  /// Of one obstacle, for the pieces near which it comes while it counts.
+  template <typename Obstacle>
+  void add_pushes(const Obstacle& obstacle) {
+    Vec3 to = obstacle.position(path_.front().t);
+    for (std::size_t k = 1; k < p_.size() && path_[k - 1].t < obstacle.until; ++k) {
       const Vec3 from = to;
-      to = position(path_[k].t);
+      to = obstacle.position(path_[k].t);
       const double moved = 0.5 * ((to - from).norm() + (p_[k] - p_[k - 1]).norm());
-      const double near = distance + kNearBy + moved;
-      if ((p_[k] + p_[k - 1] - from - to).squaredNorm() < 4.0 * near * near) pushes_.push_back({k, from, to, distance});
+      const double near = obstacle.wanted + kNearBy + moved;
+      if ((p_[k] + p_[k - 1] - from - to).squaredNorm() >= 4.0 * near * near) continue;
+      const double middle = 0.5 * (path_[k - 1].t + path_[k].t);
+      const PlacedSolid solid(obstacle.body, 0.5 * (from + to), middle);
+      if (solid.is_none()) {
+        pushes_.push_back({k, from, to, obstacle.wanted, solid});
+      } else if (solid.distance(0.5 * (p_[k] + p_[k - 1])) < obstacle.kept + kNearBy + 2.0 * moved) {
+        pushes_.push_back({k, from, to, obstacle.kept, solid});
+      }
     }
   }
 
@@ -108,13 +114,35 @@ class Band {
     const Vec3 apart = from + s * way;
     const double distance = apart.norm();
     if (distance >= push.distance || distance == 0.0) return;
+    move(k, s, (push.distance - distance) / distance * apart);
+  }
+
+  /// The same for a solid, which is seen to stand in the middle of its way.
+  void push_out_of_solid(const Push& push) {
+    const std::size_t k = push.k;
+    const Vec3 half = 0.5 * (push.to - push.from);
+    const Vec3 from = p_[k - 1] + half;
+    const Vec3 way = p_[k] - half - from;
+    double s = 0.0;
+    double least = push.distance;
+    for (int i = 0; i <= kPlaces; ++i) {
+      const double share = static_cast<double>(i) / kPlaces;
+      const double distance = push.solid.distance(from + share * way);
+      if (distance >= least) continue;
+      least = distance;
+      s = share;
+    }
+    if (least < push.distance) move(k, s, (push.distance - least) * push.solid.outward(from + s * way));
+  }
+
+  /// Moves the place at `s` of the piece that ends at point k, by its ends.
+  void move(std::size_t k, double s, const Vec3& out) {
     const double first = is_free(k - 1) ? 1.0 - s : 0.0;
     const double second = is_free(k) ? s : 0.0;
     const double both = first * first + second * second;
     if (both < 1e-6) return;
-    const Vec3 out = (push.distance - distance) / (distance * both) * apart;
-    p_[k - 1] += first * out;
-    p_[k] += second * out;
+    p_[k - 1] += first / both * out;
+    p_[k] += second / both * out;
   }
 
   /// A point and its neighbours, until it is accelerated by no more than it may be.

@@ -20,18 +20,52 @@ bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed
     slow.push_back(base::sample(unobstructed, 0.5 * point.t).position);
   }
   bool passes = true;
-  for_each_obstacle(request, first_clearance(request, settings),
-                    [&](double wanted, double ends, const auto& position, const auto& /*velocity*/) {
-                      for (std::size_t i = 0; passes && i < slow.size(); ++i) {
-                        const base::TimedPoint& point = unobstructed[i];
-                        if (point.t > std::min(until, ends)) break;
-                        if (point.t <= settings.brief_time) continue;
-                        const Vec3 there = position(point.t);
-                        const double squared = geometry::swept_distance_squared(slow[i], point.position, there, there);
-                        passes = squared >= wanted * wanted;
-                      }
-                    });
+  for_each_obstacle(request, first_clearance(request, settings), [&](const auto& obstacle) {
+    for (std::size_t i = 0; passes && i < slow.size(); ++i) {
+      const base::TimedPoint& point = unobstructed[i];
+      if (point.t > std::min(until, obstacle.until)) break;
+      if (point.t <= settings.brief_time) continue;
+      const Vec3 there = obstacle.position(point.t);
+      const double squared = geometry::swept_distance_squared(slow[i], point.position, there, there);
+      passes = squared >= obstacle.wanted * obstacle.wanted;
+    }
+  });
   return passes;
+}
+
+/// Unobstructed flight and a sphere, where they are nearest.
+template <typename Obstacle>
+std::optional<Encounter> met_sphere(const Obstacle& obstacle, const base::TimedPath& unobstructed, double until) {
+  double least = obstacle.wanted * obstacle.wanted;
+  std::optional<Encounter> met;
+  for (const base::TimedPoint& point : unobstructed) {
+    if (point.t > std::min(until, obstacle.until)) break;
+    const Vec3 apart = point.position - obstacle.position(point.t);
+    if (apart.squaredNorm() >= least) continue;
+    least = apart.squaredNorm();
+    met = {point.t, point.t, apart, apart, point.velocity - obstacle.velocity(point.t), obstacle.wanted, {}};
+  }
+  return met;
+}
+
+/// The same with a solid, where flight comes too close first: it may go through it for long.
+template <typename Obstacle>
+std::optional<Encounter> met_solid(const Obstacle& obstacle, const base::TimedPath& unobstructed, double until) {
+  std::optional<Encounter> met;
+  for (const base::TimedPoint& point : unobstructed) {
+    if (point.t > std::min(until, obstacle.until)) break;
+    const Vec3 apart = point.position - obstacle.position(point.t);
+    if (apart.squaredNorm() >= obstacle.wanted * obstacle.wanted) continue;
+    const PlacedSolid solid = obstacle.solid(point.t);
+    const double distance = solid.distance(point.position);
+    if (distance >= obstacle.kept) continue;
+    if (!met) {
+      const Vec3 closing = point.velocity - obstacle.velocity(point.t);
+      met = {point.t, point.t, apart, distance * solid.outward(point.position), closing, obstacle.kept, solid};
+    }
+    met->until = point.t;
+  }
+  return met;
 }
 
 }  // namespace
@@ -39,19 +73,11 @@ bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed
 std::vector<Encounter> encounters(const PathRequest& request, const base::TimedPath& unobstructed, double until,
                                   const base::HorizonSettings& settings) {
   std::vector<Encounter> list;
-  for_each_obstacle(request, first_clearance(request, settings),
-                    [&](double wanted, double ends, const auto& position, const auto& velocity) {
-                      double least = wanted * wanted;
-                      std::optional<Encounter> met;
-                      for (const base::TimedPoint& point : unobstructed) {
-                        if (point.t > std::min(until, ends)) break;
-                        const Vec3 apart = point.position - position(point.t);
-                        if (apart.squaredNorm() >= least) continue;
-                        least = apart.squaredNorm();
-                        met = {point.t, apart, point.velocity - velocity(point.t), wanted};
-                      }
-                      if (met) list.push_back(*met);
-                    });
+  for_each_obstacle(request, first_clearance(request, settings), [&](const auto& obstacle) {
+    const std::optional<Encounter> met =
+        obstacle.body.solid == nullptr ? met_sphere(obstacle, unobstructed, until) : met_solid(obstacle, unobstructed, until);
+    if (met) list.push_back(*met);
+  });
   const std::size_t first = std::min(static_cast<std::size_t>(settings.encounters), list.size());
   std::partial_sort(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(first), list.end(),
                     [](const Encounter& a, const Encounter& b) { return a.t < b.t; });

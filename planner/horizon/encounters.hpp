@@ -7,15 +7,24 @@
 #include "planner/base/settings.hpp"
 #include "planner/base/trajectory.hpp"
 #include "planner/horizon/path_problem.hpp"
+#include "planner/horizon/placed_solid.hpp"
 
 namespace jink::planner::horizon {
 
 /// Where unobstructed flight comes too close to an obstacle.
 struct Encounter {
-  double t = 0.0;               ///< of the closest approach, s
-  Vec3 apart = Vec3::Zero();    ///< from the obstacle to the vehicle, then, m
-  Vec3 closing = Vec3::Zero();  ///< velocity of the vehicle relative to the obstacle, then, m/s
-  double wanted = 0.0;          ///< distance between the centres, m
+  double t = 0.0;                 ///< of the closest approach to a sphere; when it first comes too close to a solid, s
+  double until = 0.0;             ///< the same for a sphere; when it last is too close to a solid, s
+  Vec3 apart = Vec3::Zero();      ///< from the obstacle's centre to the vehicle, at time t, m
+  Vec3 from_face = Vec3::Zero();  ///< from where a solid is nearest to the vehicle, then, m; `apart` of a sphere
+  Vec3 closing = Vec3::Zero();    ///< velocity of the vehicle relative to the obstacle, then, m/s
+  double wanted = 0.0;            ///< distance from a sphere's centre, or from a solid's surface, m
+  PlacedSolid solid;              ///< at time t
+
+  /// How far from the obstacle's centre the vehicle is to be in a direction, unit vector, ENU, m.
+  [[nodiscard]] double extent(const Vec3& direction) const {
+    return solid.is_none() ? wanted : solid.extent(direction) + wanted;
+  }
 };
 
 /// What is kept from an obstacle's surface by what a search begins with, m: the vehicle cuts corners.

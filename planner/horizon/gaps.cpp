@@ -17,15 +17,18 @@ constexpr int kStepsLater = 3;   // after which the place is looked for again
 struct Blocker {
   Vec3 position;
   double distance = 0.0;  // between the centres, wanted
+  PlacedSolid solid;
+  double kept = 0.0;  // from the solid's surface, wanted
 };
 
 std::vector<Blocker> blockers(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre,
                               double t, double clearance) {
   std::vector<Blocker> list;
-  for_each_obstacle(request, clearance, [&](double wanted, double until, const auto& where, const auto& /*velocity*/) {
-    if (t > until) return;
-    const Vec3 position = where(t);
-    if (std::abs((position - centre).dot(frame.axis)) < wanted) list.push_back({position, wanted});
+  for_each_obstacle(request, clearance, [&](const auto& obstacle) {
+    if (t > obstacle.until) return;
+    const Vec3 position = obstacle.position(t);
+    if (std::abs((position - centre).dot(frame.axis)) < obstacle.wanted)
+      list.push_back({position, obstacle.wanted, obstacle.solid(t), obstacle.kept});
   });
   return list;
 }
@@ -35,7 +38,9 @@ double lacking(const std::vector<Blocker>& blockers, const Vec3& place) {
   double most = 0.0;
   for (const Blocker& blocker : blockers) {
     const double squared = (place - blocker.position).squaredNorm();
-    if (squared < blocker.distance * blocker.distance) most = std::max(most, blocker.distance - std::sqrt(squared));
+    if (squared >= blocker.distance * blocker.distance) continue;
+    most = std::max(most, blocker.solid.is_none() ? blocker.distance - std::sqrt(squared)
+                                                  : blocker.kept - blocker.solid.distance(place));
   }
   return most;
 }
@@ -103,7 +108,7 @@ std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame
 }
 
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e) {
-  return base::sample(unobstructed, e.t).position - e.apart.dot(frame.axis) * frame.axis;
+  return base::sample(unobstructed, e.t).position - e.from_face.dot(frame.axis) * frame.axis;
 }
 
 std::vector<double> passages(const base::HorizonSettings& settings, double t) {

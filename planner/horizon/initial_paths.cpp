@@ -30,24 +30,25 @@ std::array<Vec3, 4> ways_past(const Encounter& e, const Vec3& heading) {
   const double speed = e.closing.norm();
   const Vec3 along = speed > 1e-6 ? Vec3(e.closing / speed) : heading;
   const Vec3 across = e.apart - e.apart.dot(along) * along;
-  Vec3 side = across;
+  Vec3 side = e.solid.is_none() ? across : Vec3(Vec3::Zero());  // most solids stand upright
   if (side.norm() < 1e-6) side = along.cross(Vec3::UnitZ());  // dead centre: any side will do
   if (side.norm() < 1e-6) side = Vec3::UnitX();
   side.normalize();
   const Vec3 other = along.cross(side);
-  return {e.wanted * side - across, -e.wanted * side - across, e.wanted * other - across, -e.wanted * other - across};
+  return {e.extent(side) * side - across, -e.extent(-side) * side - across, e.extent(other) * other - across,
+          -e.extent(-other) * other - across};
 }
 
-/// Unobstructed flight with `displacement` about time `t`: all of it while it counts, none before and after; but what
-/// it falls behind (or hurries ahead) along `heading` stays.
-base::TimedPath displaced(const base::TimedPath& unobstructed, std::span<const double> times, double t,
-                          const Vec3& displacement, const Vec3& heading, double leg) {
+/// Unobstructed flight with `displacement` from time `first` to `last`: all of it while it counts, none before and
+/// after; but what it falls behind (or hurries ahead) along `heading` stays.
+base::TimedPath displaced(const base::TimedPath& unobstructed, std::span<const double> times, double first,
+                          double last, const Vec3& displacement, const Vec3& heading, double leg) {
   base::TimedPath path;
   const Vec3 lag = displacement.dot(heading) * heading;
   for (const double time : times) {
-    const double off = std::abs(time - t) - 0.5 * kOnTime * leg;
+    const double off = std::abs(time - std::clamp(time, first, last)) - 0.5 * kOnTime * leg;
     const double share = std::clamp(1.0 - off / (kReturn * leg), 0.0, 1.0);
-    const Vec3 offset = share * displacement + (time > t ? 1.0 - share : 0.0) * lag;
+    const Vec3 offset = share * displacement + (time > last ? 1.0 - share : 0.0) * lag;
     path.push_back({time, base::sample(unobstructed, time).position + offset, Vec3::Zero(), Vec3::Zero()});
   }
   return path;
@@ -129,10 +130,12 @@ std::vector<base::TimedPath> initial_paths(const PathRequest& request, const bas
   if (!met.empty()) add_ways_through(paths, request, frame, unobstructed, times, met.front(), settings);
   for (const Encounter& e : met) {
     for (const Vec3& displacement : ways_past(e, frame.axis)) {
-      paths.push_back(displaced(unobstructed, times, e.t, displacement, frame.axis, settings.leg()));
+      paths.push_back(displaced(unobstructed, times, e.t, e.until, displacement, frame.axis, settings.leg()));
     }
-    const Vec3 centre = base::sample(unobstructed, e.t).position - e.apart;
-    const double before = (centre - request.position).dot(frame.axis) - e.wanted;
+    const Vec3 there = base::sample(unobstructed, e.t).position;
+    const Vec3 centre = there - e.apart;
+    const double before = e.solid.is_none() ? (centre - request.position).dot(frame.axis) - e.wanted
+                                            : (there - request.position).dot(frame.axis);
     paths.push_back(stopped_short(unobstructed, times, std::max(0.0, before), frame.axis, settings));
   }
   for (const double rate : {0.9, 0.8, 0.65, 0.4, 1.3}) {

@@ -33,6 +33,8 @@ class TrackMotion {
         std::max(track_.velocity.squaredNorm(), geometry::predict_velocity(track_, time, trust_).squaredNorm()));
   }
   [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] double margin() const { return 0.0; }
+  [[nodiscard]] const base::Body& body() const { return track_.body; }
   [[nodiscard]] double until() const { return base::kInfinity; }
   /// How far it strays from even motion between two instants. differs: that an accelerated track does so, by at most
   /// an eighth of its acceleration times step², is left to the margin.
@@ -60,7 +62,9 @@ class PathMotion {
 
   [[nodiscard]] Vec3 position(double t) const { return path_.position(t); }
   [[nodiscard]] double fastest(double /*time*/) const { return fastest_; }
-  [[nodiscard]] double radius() const { return path_.radius + path_.margin; }
+  [[nodiscard]] double radius() const { return path_.radius; }
+  [[nodiscard]] double margin() const { return path_.margin; }
+  [[nodiscard]] const base::Body& body() const { return path_.body; }
   [[nodiscard]] double until() const { return path_.until; }
   /// Both the path and even motion are straight between the path's points, so they are farthest apart at one of them.
   [[nodiscard]] double bend(double begin, double end) const {
@@ -90,12 +94,25 @@ class PathMotion {
   double fastest_;
 };
 
+/// The solid of what moves so, during step n.
+template <typename Motion>
+NearbySolid solid_during(const Motion& motion, double step, std::size_t n) {
+  const base::Body& body = motion.body();
+  const double begin = step * static_cast<double>(n);
+  const double end = step * static_cast<double>(n + 1);
+  const Vec3 from = motion.position(begin);
+  const Vec3 to = motion.position(end);
+  const double turned = body.solid->reach() * std::abs(body.yaw_rate) * step;
+  return {{body, from, begin}, {body, to, end}, motion.radius(), (to - from).norm() + turned};
+}
+
 }  // namespace
 
 void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
                             const Clearance& clearance, double step, std::span<const base::Box> where) {
   groups_.clear();
   found_.clear();
+  solids_.clear();
   step_.clear();
   obstacles_ = 0;
   base::Box everywhere = where.front();
@@ -123,7 +140,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
                           std::span<const base::Box> where, const base::Box& everywhere) {
   const double horizon = step * static_cast<double>(where.size());
   const double speed = motion.fastest(horizon);
-  const double hard = motion.radius() + clearance.hard;
+  const double hard = motion.radius() + motion.margin() + clearance.hard;
   const double most_bend = motion.most_bend(step);
   const double ever = hard + clearance.limit + speed * horizon + most_bend + kSlack;
   if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;
@@ -151,6 +168,14 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.near = obstacle.soft + moved + kSlack;
       obstacle.near_squared = obstacle.near * obstacle.near;
       if (distance >= obstacle.near_squared) continue;
+      if (motion.body().solid != nullptr) {
+        const NearbySolid solid = solid_during(motion, step, n);
+        const Vec3 centre = 0.5 * (where[n].min + where[n].max);
+        const double reach = 0.5 * (where[n].max - where[n].min).norm() + solid.moved + kSlack;
+        if (solid.from.distance(centre) - reach >= obstacle.soft - solid.radius) continue;
+        obstacle.solid = static_cast<int>(solids_.size());
+        solids_.push_back(solid);
+      }
       found_.push_back(obstacle);
       step_.push_back(n);
     }

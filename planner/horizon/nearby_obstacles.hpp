@@ -8,6 +8,7 @@
 
 #include "planner/base/types.hpp"
 #include "planner/geometry/known_path.hpp"
+#include "planner/horizon/placed_solid.hpp"
 
 namespace jink::planner::horizon {
 
@@ -31,6 +32,15 @@ struct NearbyObstacle {
       soft = 0.0;             ///< distance of the centres that is asked for, better not less
   double near = 0.0;          ///< from the middle: farther away, the soft distance is kept throughout the step
   double near_squared = 0.0;  ///< near²
+  int solid = -1;             ///< which of NearbyObstacles::solid() it is, none: a sphere
+};
+
+/// A solid during one step. Of its distances `radius` is taken off those of NearbyObstacle, which are from the centre.
+struct NearbySolid {
+  PlacedSolid from,     ///< when the step begins
+      to;               ///< when the step ends
+  double radius = 0.0;  ///< of the sphere that it is in, its margin not counted, m
+  double moved = 0.0;   ///< by any of its places in the step, at most, m
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
@@ -48,6 +58,10 @@ class NearbyObstacles {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
   }
+  /// The solid of an obstacle that has one; valid until the next build().
+  [[nodiscard]] const NearbySolid& solid(const NearbyObstacle& obstacle) const {
+    return solids_[static_cast<std::size_t>(obstacle.solid)];
+  }
   /// How many tracks and known paths are met in at least one step.
   [[nodiscard]] std::size_t obstacles() const { return obstacles_; }
 
@@ -63,6 +77,7 @@ class NearbyObstacles {
 
   std::vector<Group> groups_;
   std::vector<NearbyObstacle> found_, met_;  // by track, and by step
+  std::vector<NearbySolid> solids_;
   std::vector<std::size_t> step_;            // of each found
   std::vector<std::size_t> begin_;           // of each step in met_, and the end
   std::vector<std::size_t> next_;

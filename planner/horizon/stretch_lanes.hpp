@@ -69,6 +69,16 @@ struct StretchLanes {
     return {smallest(least.x), smallest(least.y), smallest(least.z), largest(most.x), largest(most.y), largest(most.z)};
   }
 
+  /// False only where all places in the stretch's bounds keep the soft distance from a solid in one step: from one
+  /// place to another a distance changes by no more than they are apart.
+  [[gnu::always_inline]] [[nodiscard]] bool may_meet(const NearbyObstacle& obstacle, const NearbySolid& solid,
+                                                     const PlainBox& bounds) const {
+    const Vec3 low(bounds.min_x, bounds.min_y, bounds.min_z);
+    const Vec3 high(bounds.max_x, bounds.max_y, bounds.max_z);
+    const double reach = 0.5 * (high - low).norm() + solid.moved;
+    return solid.from.distance(0.5 * (low + high)) < obstacle.soft - solid.radius + reach;
+  }
+
   /// False only where every lane keeps the soft distance in step j. Relative motion is straight, so during the step
   /// the distance is not below that of the middles by more than half of both ways.
   [[gnu::always_inline]] [[nodiscard]] bool may_meet(const NearbyObstacle& obstacle, std::size_t j) const {

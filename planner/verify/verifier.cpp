@@ -5,102 +5,14 @@
 #include <array>
 #include <cmath>
 
+#include "planner/base/solid.hpp"
 #include "planner/geometry/validity.hpp"
+#include "planner/verify/relative_motion.hpp"
+#include "planner/verify/solid_contact.hpp"
+#include "planner/verify/sphere_contact.hpp"
 
 namespace jink::planner::verify {
 namespace {
-
-/// |p0 + p1 t + p2 t²|² on [0, duration]: the squared distance of two bodies in relative constant acceleration.
-struct RelativeMotion {
-  Vec3 p0, p1, p2;
-  double duration = 0.0;
-
-  [[nodiscard]] Vec3 at(double t) const { return p0 + t * (p1 + t * p2); }
-  [[nodiscard]] double squared_distance(double t) const { return at(t).squaredNorm(); }
-  [[nodiscard]] double slope(double t) const { return 2.0 * at(t).dot(p1 + 2.0 * t * p2); }
-  [[nodiscard]] double speed(double t) const { return (p1 + 2.0 * t * p2).norm(); }
-};
-
-/// Sorted instants of [0, duration] between which the squared distance is monotone: the ends and every stationary
-/// point. The slope is a cubic; the two zeros of its derivative split it in monotone pieces, each with at most one
-/// root.
-struct MonotonePieces {
-  std::array<double, 5> t{};
-  int count = 0;
-
-  explicit MonotonePieces(const RelativeMotion& m) {
-    std::array<double, 4> split{0.0, m.duration, m.duration, m.duration};
-    std::size_t splits = 1;
-    // slope(t)/2 = c0 + c1 t + c2 t² + c3 t³
-    const double c1 = m.p1.squaredNorm() + 2.0 * m.p0.dot(m.p2);
-    const double c2 = 3.0 * m.p1.dot(m.p2);
-    const double c3 = 2.0 * m.p2.squaredNorm();
-    const double discriminant = c2 * c2 - 3.0 * c3 * c1;
-    if (c3 > 0.0 && discriminant > 0.0) {
-      const double root = std::sqrt(discriminant);
-      for (const double s : {(-c2 - root) / (3.0 * c3), (-c2 + root) / (3.0 * c3)}) {
-        if (s > split[splits - 1] && s < m.duration) split[splits++] = s;
-      }
-    }
-    split[splits] = m.duration;
-    add(0.0);
-    for (std::size_t i = 0; i < splits; ++i) add_root(m, split[i], split[i + 1]);
-    add(m.duration);
-  }
-
- private:
-  void add(double value) { t[static_cast<std::size_t>(count++)] = value; }
-
-  void add_root(const RelativeMotion& m, double low, double high) {
-    double at_low = m.slope(low);
-    const double at_high = m.slope(high);
-    if (!(at_low * at_high < 0.0)) return;
-    for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
-      const double middle = 0.5 * (low + high);
-      const double value = m.slope(middle);
-      if ((value < 0.0) == (at_low < 0.0)) {
-        low = middle;
-        at_low = value;
-      } else {
-        high = middle;
-      }
-    }
-    if (count < 4) add(0.5 * (low + high));
-  }
-};
-
-/// First instant of a monotonically falling piece at which the squared distance is below `limit`.
-double crossing(const RelativeMotion& m, double low, double high, double limit) {
-  for (int i = 0; i < 80 && high - low > 1e-13; ++i) {
-    const double middle = 0.5 * (low + high);
-    (m.squared_distance(middle) < limit ? high : low) = middle;
-  }
-  return high;
-}
-
-/// Folds one piece of relative motion, which starts at path time `t0`, into the result.
-void fold(const RelativeMotion& m, double t0, double radius, std::uint64_t id, Verification& result) {
-  const MonotonePieces pieces(m);
-  double previous = 0.0;
-  for (int i = 0; i < pieces.count; ++i) {
-    const double t = pieces.t[static_cast<std::size_t>(i)];
-    const double squared = m.squared_distance(t);
-    const double clearance = std::sqrt(squared) - radius;
-    if (clearance < result.min_clearance) {
-      result.min_clearance = clearance;
-      result.t_min_clearance = t0 + t;
-      result.nearest_id = id;
-    }
-    if (clearance < 0.0) {
-      const double contact = i == 0 ? 0.0 : crossing(m, previous, t, radius * radius);
-      if (!result.first_contact || t0 + contact < *result.first_contact) {
-        result.first_contact = t0 + contact;
-        result.contact_speed = m.speed(contact);
-      }
-    }
-    previous = t;
-  }
-}
 
 /// Obstacle position, velocity and acceleration `t` seconds after its track's instant.
 struct ObstacleAt {
@@ -120,17 +32,24 @@ double believed(const base::Track& track, const VerifierInput& input) {
   return left > 0.0 ? left : 0.0;
 }
 
+/// Whether its yaw can be told within a time.
+bool is_turned_little(const base::Body& body, double time) {
+  return body.solid == nullptr || std::abs(body.yaw) + time * std::abs(body.yaw_rate) <= geometry::kTurned;
+}
+
 /// Whether the track stays, while it is looked at, where its distances can be told. Without a root: there are many.
 bool stays_near(const base::Track& track, const VerifierInput& input, double time) {
   const double left = believed(track, input);
   const double accelerated = left < time ? left : time;
   const Vec3 speed = track.velocity.cwiseAbs() + accelerated * track.acceleration.cwiseAbs();
   return (track.position.cwiseAbs() + time * speed).sum() <= geometry::kFarthest &&
-         geometry::is_within(speed, geometry::kFastest);
+         geometry::is_within(speed, geometry::kFastest) && is_turned_little(track.body, time);
 }
 
-/// Whether the instants of the path's points, from `tracks_time` on, are told finely enough for its speed.
-bool is_on_time(const geometry::KnownPath& path, const VerifierInput& input) {
+/// Whether the instants of the path's points, from `tracks_time` on, are told finely enough for its speed, and its yaw
+/// within `time` of that.
+bool is_on_time(const geometry::KnownPath& path, const VerifierInput& input, double time) {
+  if (!is_turned_little(path.body, time)) return false;
   const double first = std::abs(input.tracks_time + (path.points.front().t - path.offset));
   const double last = std::abs(input.tracks_time + (path.points.back().t - path.offset));
   const double most = std::max({first, last, std::abs(input.tracks_time)});
@@ -149,7 +68,7 @@ bool can_judge(const VerifierInput& input) {
   return std::all_of(input.tracks.begin(), input.tracks.end(),
                      [&](const base::Track& t) { return geometry::is_valid(t) && stays_near(t, input, time); }) &&
          std::all_of(input.known.begin(), input.known.end(),
-                     [&](const geometry::KnownPath& path) { return is_on_time(path, input); });
+                     [&](const geometry::KnownPath& path) { return is_on_time(path, input, time); });
 }
 
 /// Both ends of a segment inside: all of it is. The one that `until` is in counts up to there.
@@ -166,14 +85,47 @@ bool stays_inside(const VerifierInput& input) {
   return true;
 }
 
+/// What an obstacle is: its sphere, or a body in it. Times are the vehicle path's.
+class Outline {
+ public:
+  Outline(const base::Body& body, double radius, std::uint64_t id, const VerifierInput& input)
+      : body_(body), radius_(radius), id_(id), vehicle_radius_(input.vehicle_radius), time_(input.tracks_time) {}
+
+  /// From a point to its surface at time t, while its centre is at `center`.
+  [[nodiscard]] double distance(const Vec3& point, const Vec3& center, double t) const {
+    if (body_.solid == nullptr) return (point - center).norm() - radius_;
+    return solid_distance(body_.later(t - time_), point - center);
+  }
+  /// How fast a place on it moves about the centre at most.
+  [[nodiscard]] double turning() const {
+    return body_.solid == nullptr ? 0.0 : std::abs(body_.yaw_rate) * body_.solid->reach();
+  }
+  /// Folds a piece of relative motion that begins at time t into the result.
+  void fold(const RelativeMotion& m, double t, Verification& result) const {
+    if (body_.solid == nullptr) {
+      fold_sphere(m, t, vehicle_radius_ + radius_, id_, result);
+    } else {
+      fold_solid(m, body_.later(t - time_), t, vehicle_radius_, id_, result);
+    }
+  }
+
+ private:
+  const base::Body& body_;
+  double radius_;
+  std::uint64_t id_;
+  double vehicle_radius_, time_;
+};
+
 /// A track as the check sees it. Times are the vehicle path's.
 class TrackMotion {
  public:
   TrackMotion(const base::Track& track, const VerifierInput& input)
-      : track_(track), tracks_time_(input.tracks_time), trust_(believed(track, input)) {}
+      : track_(track),
+        outline_(track.body, track.radius, track.id, input),
+        tracks_time_(input.tracks_time),
+        trust_(believed(track, input)) {}
 
-  [[nodiscard]] std::uint64_t id() const { return track_.id; }
-  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] const Outline& outline() const { return outline_; }
   [[nodiscard]] double until() const { return base::kInfinity; }
   [[nodiscard]] Vec3 position(double t) const { return ObstacleAt(track_, t - tracks_time_, trust_).position; }
   /// The largest speed between two instants: the velocity changes along a straight line up to where the acceleration
@@ -198,13 +150,14 @@ class TrackMotion {
       const ObstacleAt obstacle(track_, elapsed, trust_);
       const RelativeMotion m{a.position + (t - a.t) * velocity - obstacle.position, velocity - obstacle.velocity,
                              -0.5 * obstacle.acceleration, stop - t};
-      fold(m, t, input.vehicle_radius + track_.radius, track_.id, result);
+      outline_.fold(m, t, result);
       t = stop;
     }
   }
 
  private:
   const base::Track& track_;
+  Outline outline_;
   double tracks_time_, trust_;
 };
 
@@ -213,10 +166,9 @@ class TrackMotion {
 class KnownMotion {
  public:
   KnownMotion(const geometry::KnownPath& path, const VerifierInput& input)
-      : path_(path), tracks_time_(input.tracks_time) {}
+      : path_(path), outline_(path.body, path.radius, path.id, input), tracks_time_(input.tracks_time) {}
 
-  [[nodiscard]] std::uint64_t id() const { return path_.id; }
-  [[nodiscard]] double radius() const { return path_.radius; }
+  [[nodiscard]] const Outline& outline() const { return outline_; }
   [[nodiscard]] double until() const { return tracks_time_ + path_.until; }
   [[nodiscard]] Vec3 position(double t) const { return on_piece(piece(t), t); }
   [[nodiscard]] double fastest(double /*begin*/, double /*end*/) const { return path_.fastest(); }
@@ -232,7 +184,7 @@ class KnownMotion {
       if (stop > t) {
         const RelativeMotion m{a.position + (t - a.t) * velocity - on_piece(k, t), velocity - velocity_on(k),
                                Vec3::Zero(), stop - t};
-        fold(m, t, input.vehicle_radius + path_.radius, path_.id, result);
+        outline_.fold(m, t, result);
       }
       t = stop;
     }
@@ -263,6 +215,7 @@ class KnownMotion {
   }
 
   const geometry::KnownPath& path_;
+  Outline outline_;
   double tracks_time_;
 };
 
@@ -296,13 +249,15 @@ template <typename Motion>
 class Bound {
  public:
   Bound(const Motion& motion, const VerifierInput& input, double begin, double end)
-      : motion_(motion), radius_(input.vehicle_radius + motion.radius()), speed_(motion.fastest(begin, end)) {}
+      : motion_(motion),
+        radius_(input.vehicle_radius),
+        speed_(motion.fastest(begin, end) + motion.outline().turning()) {}
 
   /// Whether the clearance can fall below zero or below `ceiling` while the vehicle is within `radius` of `center` and
   /// time within `half` of `t`. Lowers `ceiling` to the clearance at `center` and `t` where that counts.
   [[nodiscard]] bool matters(const Vec3& center, double t, double radius, double half, double& ceiling) const {
     const Vec3 obstacle = motion_.position(t);
-    const double distance = (center - obstacle).norm();
+    const double distance = motion_.outline().distance(center, obstacle, t);
     const double travel = speed_ * half;
     const double scale = center.cwiseAbs().maxCoeff() + obstacle.cwiseAbs().maxCoeff() + radius + travel + 1.0;
     const double limit = std::max(0.0, ceiling);
@@ -357,8 +312,7 @@ class PathCheck {
   template <typename Motion>
   void add_place(const Motion& motion, const base::TimedPoint& place, Verification& result) const {
     if (place.t >= motion.until()) return;
-    fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t,
-         input_.vehicle_radius + motion.radius(), motion.id(), result);
+    motion.outline().fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t, result);
   }
 
   static constexpr std::size_t kStretches = 12;

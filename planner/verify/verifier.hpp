@@ -16,7 +16,7 @@ namespace jink::planner::verify {
 
 /// What a path does among predicted obstacles. Times are the path's own.
 struct Verification {
-  double min_clearance = base::kInfinity;  ///< smallest distance from the vehicle's sphere to an obstacle's sphere
+  double min_clearance = base::kInfinity;  ///< smallest distance from the vehicle's sphere to an obstacle's surface
   double t_min_clearance = 0.0;            ///< when
   std::uint64_t nearest_id = 0;            ///< to which track or known path
   std::optional<double> first_contact;     ///< first time at which a clearance falls below zero
@@ -50,8 +50,9 @@ inline constexpr double kAccuracy = 1e-7;
 inline constexpr double kUsualAccuracy = 1e-9;  ///< m, see kAccuracy
 
 /// Minimum over all instants, not samples: between two points and the instants at which a prediction changes or a known
-/// path turns, the squared distance is a polynomial of degree four whose stationary points are all found. What is
-/// certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
+/// path turns, the squared distance to a sphere's centre is a polynomial of degree four whose stationary points are all
+/// found, and the distance to a solid is bounded from below until no interval can hold a smaller one (solid_contact.hpp).
+/// In a hull of vertices the distance counts as 0, however deep. What is certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
 /// each track that comes near; at worst O(points · tracks).
 ///
 /// Not valid, and so not free, is what planner/geometry/validity.hpp refuses (no path, times that do not increase,

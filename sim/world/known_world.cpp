@@ -15,7 +15,11 @@ constexpr double kMargin = 0.05;  // m
 
 KnownWorld::KnownWorld(const config::Scenario& scenario) {
   const World world(scenario);
-  for (int i = 0; i < world.obstacle_count(); ++i) tracks.push_back(world.exact_track(i, 0.0));
+  for (int i = 0; i < world.obstacle_count(); ++i) {
+    tracks.push_back(world.exact_track(i, 0.0));
+    spheres.push_back(tracks.back());
+    spheres.back().body = {};
+  }
   volume.min.z() = std::min({0.0, scenario.start.z(), scenario.target.z()});
   if (scenario.world) volume = *scenario.world;
   open_loop.path.position = scenario.start;

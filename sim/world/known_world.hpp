@@ -14,7 +14,8 @@ struct KnownWorld {
   KnownWorld(const KnownWorld&) = delete;
   KnownWorld& operator=(const KnownWorld&) = delete;
 
-  std::vector<planner::base::Track> tracks;  ///< exact at t = 0, in the order of the scenario's obstacles
+  std::vector<planner::base::Track> tracks;   ///< exact at t = 0, in the order of the scenario's obstacles
+  std::vector<planner::base::Track> spheres;  ///< the same, each the sphere that encloses it: what the paper knows
   planner::base::Box volume;  ///< the scenario's world, or all above the lowest of ground, start and target
   planner::horizon::OpenLoopRequest open_loop;  ///< from rest at the start; borrows `tracks`
 };

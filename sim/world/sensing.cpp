@@ -32,9 +32,7 @@ std::vector<planner::base::Track> measure(const World& world, const config::Sens
   const bool perfect = sensing.position_noise == 0.0 && sensing.velocity_noise == 0.0;
   for (int i = 0; i < world.obstacle_count(); ++i) {
     planner::base::Track track = world.exact_track(i, t);
-    const auto near = [&](const Vec3& vehicle) {
-      return (vehicle - track.position).norm() - track.radius <= sensing.range;
-    };
+    const auto near = [&](const Vec3& vehicle) { return world.distance(i, vehicle, t) <= sensing.range; };
     if (std::none_of(vehicles.begin(), vehicles.end(), near)) continue;
     planner::base::RandomStream random(seed ^ kSensingStream, sequence, World::id(i));
     if (random.uniform() < sensing.dropout) continue;

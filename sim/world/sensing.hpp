@@ -15,10 +15,9 @@
 namespace jink::sim::world {
 
 /// The tracks of one measurement at scenario time `t`, from vehicles whose centres are at `vehicles`, in the order of
-/// the obstacles: each obstacle whose enclosing sphere's surface is within range of one of them, and that does not drop
-/// out.
+/// the obstacles: each obstacle whose surface is within range of one of them, and that does not drop out.
 /// - position and velocity are those of the enclosing sphere's centre, with independent Gaussian noise on each axis;
-///   the sigmas say how much. The radius is exact, the age 0.
+///   the sigmas say how much. Radius and body are exact, the age 0.
 /// - acceleration is the true one where both noises are zero, otherwise zero: what measures with noise does not report
 ///   accelerations that anyone could use.
 /// The random numbers depend on (seed, sequence, obstacle) alone: not on the range, on other obstacles or on the other

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/shapes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,6 +116,32 @@ SegmentDistance hull_distance(const std::vector<Vec3>& vertices, const Vec3& beg
 
 // Here `point`, `begin` and `end` are relative to the reference point.
 
+/// The smallest distance between two straight ways, and where on the first: at an end of one, or where both are met by
+/// the line across them.
+SegmentDistance lines_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto share_of = [](const Vec3& p, const Vec3& from, const Vec3& way) {
+    const double square = way.squaredNorm();
+    return square > 0.0 ? std::clamp((p - from).dot(way) / square, 0.0, 1.0) : 0.0;
+  };
+  const Vec3 u = b - a;
+  const Vec3 v = d - c;
+  SegmentDistance best;
+  const auto consider = [&](double s) {
+    const Vec3 p = a + s * u;
+    const double distance = (p - c - share_of(p, c, v) * v).norm();
+    if (distance < best.distance) best = {distance, s};
+  };
+  consider(0.0);
+  consider(1.0);
+  consider(share_of(c, a, u));
+  consider(share_of(d, a, u));
+  const double parallel = u.dot(v);
+  const double across = u.squaredNorm() * v.squaredNorm() - parallel * parallel;
+  if (across > 0.0)
+    consider(std::clamp((parallel * v.dot(a - c) - v.squaredNorm() * u.dot(a - c)) / across, 0.0, 1.0));
+  return best;
+}
+
 double signed_distance(const config::SphereShape& shape, const Vec3& point) {
   return point.norm() - shape.radius;
 }
@@ -122,6 +149,16 @@ double signed_distance(const config::SphereShape& shape, const Vec3& point) {
 double signed_distance(const config::BoxShape& shape, const Vec3& point) {
   const Vec3 beyond = point.cwiseAbs() - 0.5 * shape.edges;
   return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+double signed_distance(const config::CylinderShape& shape, const Vec3& point) {
+  const double aside = point.head<2>().norm() - shape.radius;
+  const double above = std::abs(point.z()) - 0.5 * shape.height;
+  return std::hypot(std::max(aside, 0.0), std::max(above, 0.0)) + std::min(std::max(aside, above), 0.0);
+}
+
+double signed_distance(const config::CapsuleShape& shape, const Vec3& point) {
+  return lines_distance(point, point, shape.a, shape.b).distance - shape.radius;
 }
 
 double signed_distance(const config::VertexShape& shape, const Vec3& point) {
@@ -208,6 +245,28 @@ SegmentDistance along(const config::BoxShape& shape, const Vec3& begin, const Ve
   return best;
 }
 
+/// Along a line the distance is convex: the interval that holds its minimum is cut in thirds.
+SegmentDistance along(const config::CylinderShape& shape, const Vec3& begin, const Vec3& end) {
+  const auto at = [&](double s) { return signed_distance(shape, begin + s * (end - begin)); };
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 100; ++i) {
+    const double a = low + (high - low) / 3.0;
+    const double b = high - (high - low) / 3.0;
+    at(a) < at(b) ? high = b : low = a;
+  }
+  SegmentDistance best;
+  for (const double s : {0.0, 0.5 * (low + high), 1.0}) {
+    if (at(s) < best.distance) best = {at(s), s};
+  }
+  return best;
+}
+
+SegmentDistance along(const config::CapsuleShape& shape, const Vec3& begin, const Vec3& end) {
+  const SegmentDistance line = lines_distance(begin, end, shape.a, shape.b);
+  return {line.distance - shape.radius, line.fraction};
+}
+
 SegmentDistance along(const config::VertexShape& shape, const Vec3& begin, const Vec3& end) {
   return hull_distance(shape.vertices, begin, end);
 }
@@ -217,6 +276,12 @@ double depth(const config::SphereShape& shape) {
 }
 double depth(const config::BoxShape& shape) {
   return 0.5 * shape.edges.minCoeff();
+}
+double depth(const config::CylinderShape& shape) {
+  return std::min(shape.radius, 0.5 * shape.height);
+}
+double depth(const config::CapsuleShape& shape) {
+  return shape.radius;
 }
 double depth(const config::VertexShape& /*shape*/) {
   return 0.0;
@@ -228,14 +293,63 @@ Sphere enclose(const config::SphereShape& shape) {
 Sphere enclose(const config::BoxShape& shape) {
   return {Vec3::Zero(), 0.5 * shape.edges.norm()};
 }
+Sphere enclose(const config::CylinderShape& shape) {
+  return {Vec3::Zero(), std::hypot(shape.radius, 0.5 * shape.height)};
+}
+Sphere enclose(const config::CapsuleShape& shape) {
+  return {0.5 * (shape.a + shape.b), 0.5 * (shape.b - shape.a).norm() + shape.radius};
+}
 Sphere enclose(const config::VertexShape& shape) {
   return planner::geometry::smallest_enclosing_sphere(shape.vertices);
 }
+
+/// A shape in axes of its own as a solid about `center`.
+struct MakeSolid {
+  using Solid = planner::base::Solid;
+  Eigen::Matrix3d axes;
+  Vec3 center;
+
+  std::shared_ptr<const Solid> operator()(const config::SphereShape& /*shape*/) const { return nullptr; }
+  std::shared_ptr<const Solid> operator()(const config::BoxShape& shape) const {
+    return Solid::box(shape.edges, {-center, axes});
+  }
+  std::shared_ptr<const Solid> operator()(const config::CylinderShape& shape) const {
+    return Solid::cylinder(shape.radius, shape.height, {-center, axes});
+  }
+  std::shared_ptr<const Solid> operator()(const config::CapsuleShape& shape) const {
+    return Solid::capsule(shape.radius, axes * shape.a - center, axes * shape.b - center);
+  }
+  std::shared_ptr<const Solid> operator()(const config::VertexShape& shape) const {
+    std::vector<Vec3> vertices;
+    vertices.reserve(shape.vertices.size());
+    for (const Vec3& vertex : shape.vertices) vertices.emplace_back(axes * vertex - center);
+    return Solid::hull(std::move(vertices));
+  }
+};
 
 }  // namespace
 
 Sphere bounding_sphere(const config::Shape& shape) {
   return std::visit([](const auto& s) { return enclose(s); }, shape);
+}
+
+Sphere bounding_sphere(const config::Obstacle& obstacle) {
+  const Sphere own = bounding_sphere(obstacle.shape);
+  if (obstacle.yaw_rate != 0.0) return {Vec3::Zero(), own.center.norm() + own.radius};
+  return {axes_at(obstacle, 0.0) * own.center, own.radius};
+}
+
+std::shared_ptr<const planner::base::Solid> solid_of(const config::Obstacle& obstacle, const Vec3& center) {
+  const MakeSolid make{axes_at(obstacle, 0.0), center};
+  return std::visit([&](const auto& shape) { return make(shape); }, obstacle.shape);
+}
+
+Eigen::Matrix3d axes_at(const config::Obstacle& obstacle, double t) {
+  if (obstacle.yaw_rate == 0.0 && obstacle.orientation.isZero(0.0)) return Eigen::Matrix3d::Identity();
+  const double yaw = obstacle.orientation[0] + obstacle.yaw_rate * std::max(t, 0.0);
+  return (Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(obstacle.orientation[1], Vec3::UnitY()) *
+          Eigen::AngleAxisd(obstacle.orientation[2], Vec3::UnitX()))
+      .toRotationMatrix();
 }
 
 double distance(const config::Shape& shape, const Vec3& reference, const Vec3& point) {

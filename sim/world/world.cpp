@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "sim/world/shapes.hpp"
@@ -22,7 +24,7 @@ struct Way {
   [[nodiscard]] double time(double u) const { return (1.0 - u) * t0 + u * t1; }
 };
 
-/// A place on the way, and where the vehicle is from the obstacle's reference point there.
+/// A place on the way, and where the vehicle is from the obstacle's reference point there, along the obstacle's axes.
 struct Place {
   double u = 0.0;
   Vec3 relative = Vec3::Zero();
@@ -47,21 +49,24 @@ class Search {
 
  private:
   [[nodiscard]] Place place(double u) const {
-    return {u, way_.position(u) - state_at(obstacle_.motion, way_.time(u)).position};
+    const double t = way_.time(u);
+    return {u, axes_at(obstacle_, t).transpose() * (way_.position(u) - state_at(obstacle_.motion, t).position)};
   }
 
   /// Each level halves the interval, so the depth is at most that of a double's bits.
   void refine(const Place& from, const Place& to) {
     const SegmentDistance chord = segment_distance(obstacle_.shape, Vec3::Zero(), from.relative, to.relative);
     const double u = from.u + chord.fraction * (to.u - from.u);
-    const double reached = distance(obstacle_.shape, Vec3::Zero(), place(u).relative);
+    const double reached = world::distance(obstacle_.shape, Vec3::Zero(), place(u).relative);
     if (reached < best_) {
       best_ = reached;
       best_t_ = way_.time(u);
     }
     // Distance changes by no more than its point moves, so along the true motion it is no less than along the chord
     // minus the deviation from the chord.
-    const double deviation = chord_deviation(obstacle_.motion, way_.time(from.u), way_.time(to.u));
+    const double t0 = way_.time(from.u);
+    const double t1 = way_.time(to.u);
+    const double deviation = chord_deviation(obstacle_.motion, t0, t1) + turn_deviation(from.relative, to.relative, t0, t1);
     const double bound = std::max(chord.distance - deviation, floor_);
     if (!(bound < best_ - World::kSweepTolerance)) return;
     const double half = 0.5 * (from.u + to.u);
@@ -69,6 +74,20 @@ class Search {
     const Place middle = place(half);
     refine(from, middle);
     refine(middle, to);
+  }
+
+  /// How far straight relative motion strays from its chord in axes that turn: an eighth of the square of the time by
+  /// its acceleration there, twice the rate times the speed and the square of the rate times the distance. What motion
+  /// strays from a chord is no longer in turning axes.
+  [[nodiscard]] double turn_deviation(const Vec3& from, const Vec3& to, double t0, double t1) const {
+    if (obstacle_.yaw_rate == 0.0 || t1 <= 0.0) return 0.0;
+    const double turned = std::abs(obstacle_.yaw_rate) * (t1 - t0);
+    const double far = std::max(from.norm(), to.norm());
+    // The chord in ENU is as long as from one to the other, turned by as much.
+    const double moved = (to - from).norm() + turned * far;
+    const double turning = (2.0 * moved * turned + turned * turned * far) / 8.0;
+    // One that begins to turn in between does so suddenly.
+    return t0 < 0.0 ? turned * far + turning : turning;
   }
 
   const config::Obstacle& obstacle_;
@@ -99,7 +118,14 @@ SweepResult sweep(const SphereSegment& a, const SphereSegment& b, double t0, dou
 
 World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
   bounds_.reserve(scenario_.obstacles.size());
-  for (const config::Obstacle& obstacle : scenario_.obstacles) bounds_.push_back(bounding_sphere(obstacle.shape));
+  for (const config::Obstacle& obstacle : scenario_.obstacles) {
+    bounds_.push_back(bounding_sphere(obstacle));
+    solids_.push_back(solid_of(obstacle, bounds_.back().center));
+  }
+}
+
+double World::distance(int i, const Vec3& p, double t) const {
+  return world::distance(spec(i).shape, Vec3::Zero(), axes_at(spec(i), t).transpose() * (p - obstacle(i, t).position));
 }
 
 ObstacleState World::obstacle(int i, double t) const {
@@ -118,6 +144,10 @@ planner::base::Track World::exact_track(int i, double t) const {
   track.velocity = state.velocity;
   track.acceleration = state.acceleration;
   track.radius = bound(i).radius;
+  if (const auto& solid = solids_[static_cast<std::size_t>(i)]) {
+    const double rate = spec(i).yaw_rate;
+    track.body = {solid, std::remainder(rate * std::max(t, 0.0), 2.0 * std::numbers::pi), t < 0.0 ? 0.0 : rate};
+  }
   return track;
 }
 
@@ -127,7 +157,7 @@ double World::clearance(const Vec3& p, double t, double radius) const {
     const Vec3 reference = obstacle(i, t).position;
     // The shape is inside its sphere, so where the sphere is farther than the nearest so far, the shape is too.
     if ((p - reference - bound(i).center).norm() - bound(i).radius >= nearest) continue;
-    nearest = std::min(nearest, distance(spec(i).shape, reference, p));
+    nearest = std::min(nearest, distance(i, p, t));
   }
   return nearest - radius;
 }

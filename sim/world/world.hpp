@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "config/scenario.hpp"
@@ -57,8 +58,11 @@ class World {
   /// Centre and radius of the smallest sphere around obstacle `i` at `t`.
   [[nodiscard]] planner::geometry::Sphere sphere(int i, double t) const;
 
-  /// What perfect sensing would report of obstacle `i`: its enclosing sphere with the true velocity and acceleration,
-  /// no uncertainty, age 0.
+  /// From a point to the true surface of obstacle `i` at `t`, m; negative inside.
+  [[nodiscard]] double distance(int i, const Vec3& p, double t) const;
+
+  /// What perfect sensing would report of obstacle `i`: its enclosing sphere, and in it its shape, with the true velocity
+  /// and acceleration, no uncertainty, age 0.
   [[nodiscard]] planner::base::Track exact_track(int i, double t) const;
 
   /// Smallest distance at `t` from the vehicle's sphere, centred at `p`, to the true surface of any obstacle; negative
@@ -94,6 +98,7 @@ class World {
 
   config::Scenario scenario_;
   std::vector<planner::geometry::Sphere> bounds_;  ///< one per obstacle, relative to its reference point
+  std::vector<std::shared_ptr<const planner::base::Solid>> solids_;  ///< one per obstacle, about its bound's centre
 };
 
 }  // namespace jink::sim::world

@@ -96,7 +96,7 @@ planner::verify::Plan plan_scenario(const PlanOptions& options, const config::Sc
           : planner::base::Budget::Time::max();
   if (options.mode == "paper") {
     const planner::paper::PaperRequest request{scenario.start,   scenario.target,     world.volume,
-                                               scenario.vehicle, world.tracks,        settings.optimizer,
+                                               scenario.vehicle, world.spheres,       settings.optimizer,
                                                settings.paper,   options.common.seed, deadline};
     if (planner::paper::effective_axis(request) != settings.paper.axis) {
       printer.line("note: the mission is steep in world X, so the waypoints are placed along the path's own axis");

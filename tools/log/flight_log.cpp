@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/base/solid.hpp"
 #include "tools/base/exit_code.hpp"
 
 namespace jink::tools::log {
@@ -193,20 +194,26 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
   line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
   line_.key("tracks").open('[');
-  for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age] : job.tracks) {
+  for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age, body] : job.tracks) {
     line_.open('[').integer(id);
     for (const Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());
-    line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age).close(']');
+    line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age);
+    if (body.solid) add_body(body);
+    line_.close(']');
   }
   line_.close(']').key("forecasts").open('[');
   for (const bridge::prediction::Forecast& forecast : job.forecasts) add_forecast(forecast);
   line_.close(']').key("paths").open('[');
-  for (const auto& [id, points, offset, r, off_path, position_sigma, velocity_sigma, age, until] : job.paths) {
+  for (const auto& [id, points, offset, r, off_path, position_sigma, velocity_sigma, age, until, body] : job.paths) {
     line_.open('{').key("id").integer(id).key("offset").exact(offset).key("radius").exact(r).key("margin").exact(
         off_path);
     line_.key("position_sigma").exact(position_sigma).key("velocity_sigma").exact(velocity_sigma);
     line_.key("age").exact(age).key("until").exact(until);
     add_points("points", points);
+    if (body.solid) {
+      line_.key("body");
+      add_body(body);
+    }
     line_.close('}');
   }
   line_.close(']');
@@ -228,6 +235,21 @@ void FlightLog::add_forecast(const bridge::prediction::Forecast& forecast) {
     for (Eigen::Index row = 0; row < swinging.terms.rows(); ++row) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) line_.exact(swinging.terms(row, axis));
     }
+  }
+  line_.close(']').close('}');
+}
+
+void FlightLog::add_body(const planner::base::Body& body) {
+  const auto exact = [this](const Vec3& v) { line_.exact(v.x()).exact(v.y()).exact(v.z()); };
+  const planner::base::Solid& solid = *body.solid;
+  line_.open('{').key("yaw").exact(body.yaw).key("yaw_rate").exact(body.yaw_rate);
+  line_.key(solid.is_hull() ? "hull" : "prism").open('[');
+  for (const Vec3& vertex : solid.vertices()) exact(vertex);
+  if (!solid.is_hull()) {
+    exact(solid.half());
+    line_.exact(solid.corner()).exact(solid.rounding());
+    exact(solid.pose().center);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) exact(solid.pose().axes.col(axis));
   }
   line_.close(']').close('}');
 }

@@ -45,7 +45,8 @@ struct FlightLogOptions {
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], margin, track_acceleration,
 /// acceleration_trust, stuck, visit, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma,
-/// velocity_sigma, age], ...], forecasts: [{track, radius, position_sigma, velocity_sigma, plain_until, bounces:
+/// velocity_sigma, age], ...], at the end of each that has a solid {yaw, yaw_rate, prism: [half edges, corner, rounding,
+/// centre, three axes] or hull: [vertices]} (planner::base::Solid, numbers in a row), forecasts: [{track, radius, position_sigma, velocity_sigma, plain_until, bounces:
 /// [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id,
 /// offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's
 /// other vehicles (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
@@ -110,6 +111,7 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
   void add_job(const bridge::companion::PlanJob& job);
   void add_forecast(const bridge::prediction::Forecast& forecast);
   void add_points(std::string_view key, const planner::base::TimedPath& path);
+  void add_body(const planner::base::Body& body);
 
   std::filesystem::path file_;
   FlightLogOptions options_;

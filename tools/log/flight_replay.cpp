@@ -75,8 +75,43 @@ planner::base::VehicleLimits vehicle_of(const Json& from) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]};
 }
 
+Vec3 at(const std::vector<double>& numbers, std::size_t i) {
+  return {numbers[i], numbers[i + 1], numbers[i + 2]};
+}
+
+std::shared_ptr<const planner::base::Solid> solid_of(const Json& record) {
+  using planner::base::Solid;
+  const char* const kind = record.contains("hull") ? "hull" : "prism";
+  std::vector<double> x;
+  for (const Json& number : list_of(record, kind)) x.push_back(exact(number, kind));
+  try {
+    if (record.contains("hull")) {
+      if (x.size() % 3 != 0) refuse("\"hull\" is not a list of points");
+      std::vector<Vec3> vertices;
+      for (std::size_t i = 0; i < x.size(); i += 3) vertices.push_back(at(x, i));
+      return Solid::hull(std::move(vertices));
+    }
+    constexpr std::size_t kNumbers = 17;
+    if (x.size() != kNumbers) refuse("\"prism\" is not a list of 17 numbers");
+    Solid::Pose pose{at(x, 5), {}};
+    pose.axes << at(x, 8), at(x, 11), at(x, 14);
+    return Solid::prism(at(x, 0), x[3], x[4], pose);
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
+  }
+}
+
+planner::base::Body body_of(const Json& record, double radius) {
+  if (!record.is_object()) refuse("\"tracks\" holds a body that is no object");
+  const planner::base::Body body{solid_of(record), exact(member(record, "yaw"), "yaw"),
+                                 exact(member(record, "yaw_rate"), "yaw_rate")};
+  if (!planner::geometry::is_valid(body, radius)) refuse("\"tracks\" holds a body that is not in its sphere");
+  return body;
+}
+
 planner::base::Track track_of(const Json& item) {
-  check_list(item, "tracks", 14);
+  constexpr std::size_t kNumbers = 14;  // and a body, where it has one
+  if (!item.is_array() || item.size() != kNumbers + 1) check_list(item, "tracks", kNumbers);
   if (!item[0].is_number_unsigned()) refuse("\"tracks\" holds an id that is not a whole number");
   std::array<double, 13> x{};
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = exact(item[i + 1], "tracks");
@@ -87,7 +122,8 @@ planner::base::Track track_of(const Json& item) {
           x[9],
           x[10],
           x[11],
-          x[12]};
+          x[12],
+          item.size() > kNumbers ? body_of(item[kNumbers], x[9]) : planner::base::Body()};
 }
 
 planner::geometry::KnownPath known_path_of(const Json& item) {
@@ -101,6 +137,7 @@ planner::geometry::KnownPath known_path_of(const Json& item) {
   path.velocity_sigma = exact(member(item, "velocity_sigma"), "velocity_sigma");
   path.age = exact(member(item, "age"), "age");
   path.until = exact(member(item, "until"), "until");
+  if (item.contains("body")) path.body = body_of(item["body"], path.radius);
   if (!planner::geometry::is_valid(path)) refuse("\"paths\" holds a path that none can fly");
   return path;
 }

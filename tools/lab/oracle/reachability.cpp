@@ -20,6 +20,7 @@ constexpr double kRoundUp = 1.001;   // by which a cell is longer than the way o
 struct Blocked {
   bool known = false;
   Vec3 reference = Vec3::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   std::vector<Index> cells;
 };
 
@@ -92,18 +93,19 @@ class Reachability {
     });
   }
 
-  /// The same cells for a box or a hull, reached or not; worked out again only where it has moved.
+  /// The same cells for a solid, reached or not; worked out again only where it has moved.
   const std::vector<Index>& blocked_by(int i, double t) {
-    const config::Shape& shape = world_.scenario().obstacles[static_cast<std::size_t>(i)].shape;
+    const config::Obstacle& obstacle = world_.scenario().obstacles[static_cast<std::size_t>(i)];
     const Vec3 reference = world_.obstacle(i, t).position;
+    const Eigen::Matrix3d axes = sim::world::axes_at(obstacle, t);
     Blocked& blocked = blocked_[static_cast<std::size_t>(i)];
-    if (blocked.known && blocked.reference == reference) return blocked.cells;
-    blocked = {true, reference, {}};
+    if (blocked.known && blocked.reference == reference && blocked.axes == axes) return blocked.cells;
+    blocked = {true, reference, axes, {}};
     const planner::geometry::Sphere ball = too_near(i, t);
     const Vec3 reach = Vec3::Constant(ball.radius);
     for_cells(ball.center - reach, ball.center + reach, [&](int x, int y, int z) {
       const Vec3 low = low_corner(x, y, z);
-      if (in_ball(low, ball) && in_shape(low - reference, shape)) blocked.cells.emplace_back(x, y, z);
+      if (in_ball(low, ball) && in_shape(low - reference, obstacle.shape, axes)) blocked.cells.emplace_back(x, y, z);
     });
     return blocked.cells;
   }
@@ -121,16 +123,17 @@ class Reachability {
     return farthest.squaredNorm() < ball.radius * ball.radius;
   }
 
-  /// Whether all of the cell is too near to the shape, which is convex, so that its corners tell, and for a box, which
-  /// is symmetric, the farthest of them. `low` is relative to the reference point.
-  [[nodiscard]] bool in_shape(const Vec3& low, const config::Shape& shape) const {
-    if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
+  /// Whether all of the cell is too near to the shape, which is convex, so that its corners tell, and for a box that is
+  /// not turned, which is symmetric, the farthest of them. `low` is relative to the reference point.
+  [[nodiscard]] bool in_shape(const Vec3& low, const config::Shape& shape, const Eigen::Matrix3d& axes) const {
+    const auto* box = std::get_if<config::BoxShape>(&shape);
+    if (box != nullptr && axes.isIdentity(0.0)) {
       const Vec3 farthest = low.cwiseAbs().cwiseMax((low + cell_).cwiseAbs());
       return surface_distance(*box, farthest) < world_.scenario().vehicle.radius;
     }
     for (unsigned corner = 0; corner < 8; ++corner) {
       const Vec3 place = low + cell_.cwiseProduct(Vec3(corner & 1U, corner >> 1U & 1U, corner >> 2U));
-      if (surface_distance(shape, place) >= world_.scenario().vehicle.radius) return false;
+      if (surface_distance(shape, axes.transpose() * place) >= world_.scenario().vehicle.radius) return false;
     }
     return true;
   }

@@ -11,8 +11,8 @@
 
 namespace jink::tools::lab::oracle {
 
-/// In metres, from the surface to a point that is given relative to the obstacle's reference point; negative in a
-/// sphere or a box, 0 in a hull, whose distance is sim's.
+/// In metres, from the surface to a point that is given relative to the obstacle's reference point, along its own axes;
+/// negative in a sphere or a box. Of the others the distance is sim's.
 inline double surface_distance(const config::Shape& shape, const Vec3& relative) {
   if (const auto* sphere = std::get_if<config::SphereShape>(&shape)) return relative.norm() - sphere->radius;
   if (const auto* box = std::get_if<config::BoxShape>(&shape)) {

@@ -54,7 +54,8 @@ class Piece {
  private:
   [[nodiscard]] double distance_at(double u) const {
     const Vec3 centre = (1.0 - u) * from_.position + u * to_.position;
-    return surface_distance(spec_.shape, centre - world_.obstacle(obstacle_, time_at(u)).position);
+    const Vec3 relative = centre - world_.obstacle(obstacle_, time_at(u)).position;
+    return surface_distance(spec_.shape, sim::world::axes_at(spec_, time_at(u)).transpose() * relative);
   }
   [[nodiscard]] double time_at(double u) const { return (1.0 - u) * from_.t + u * to_.t; }
 
@@ -62,7 +63,8 @@ class Piece {
   [[nodiscard]] double change(double u0, double u1) const {
     const double t0 = time_at(u0);
     const double t1 = time_at(u1);
-    return (u1 - u0) * length_ + std::visit(FastestDuring{t0, t1}, spec_.motion) * (t1 - t0);
+    const double turning = std::abs(spec_.yaw_rate) * sim::world::bounding_sphere(spec_).radius;
+    return (u1 - u0) * length_ + (std::visit(FastestDuring{t0, t1}, spec_.motion) + turning) * (t1 - t0);
   }
 
   // In between, the distance is at least what falling from both ends until they meet gives.

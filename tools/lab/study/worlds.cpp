@@ -120,7 +120,7 @@ config::Scenario StudyWorlds::scenario(const std::string& name, int run) const {
 World StudyWorlds::world(const std::string& name, int run) const {
   const config::Scenario s = scenario(name, run);
   const sim::world::KnownWorld known(s);
-  return {s.start, s.target, s.vehicle, known.tracks, known.volume};
+  return {s.start, s.target, s.vehicle, known.spheres, known.volume};
 }
 
 }  // namespace jink::tools::lab::study

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How near the vehicle comes to a solid that moves and turns.
+#pragma once
+
+#include <cstdint>
+
+#include "planner/verify/relative_motion.hpp"
+#include "planner/verify/verifier.hpp"
+
+namespace jink::planner::verify {
+
+/// From a point to the surface of the body, the point relative to the body's reference point, ENU, m; negative in a
+/// prism, minus the way out, and 0 in a hull. Never more than it is by more than rounding. O(vertices) for each of a few
+/// steps, no heap. Precondition: a solid.
+[[nodiscard]] double solid_distance(const base::Body& body, const Vec3& point);
+
+/// Folds one piece of relative motion, which starts at path time `t0`, when the body is as given, into the result, for a
+/// vehicle of that radius. Where it turns or swings so fast that the nearest place is not found in 100 000 steps, the
+/// result is not valid.
+///
+/// Seen from the body, the vehicle's centre goes along a curve q(t) whose second derivative is at most some a. The
+/// distance d to a convex body is convex and grows no faster than its point moves, so d(q(t)) + a t²/2 is convex in t:
+/// its tangents at both ends of an interval bound it from below, and intervals are split until no bound is below what
+/// was found by more than 1e-9 m, and rounding (branch and bound with an alpha underestimator, Adjiman et al., 1998).
+void fold_solid(const RelativeMotion& m, const base::Body& body, double t0, double vehicle_radius, std::uint64_t id,
+                Verification& result);
+
+}  // namespace jink::planner::verify
