@@ -11,13 +11,12 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr int kSweeps = 1200;
-constexpr int kRelaxed =
-    900;  // sweeps of full tension; in those after that it fades, so that what bounds the band wins
+constexpr int kSweeps = 2000;
+constexpr int kRelaxed = 1500;           // sweeps of full tension, which fades then, so that what bounds the band wins
 constexpr int kLookAgain = 50;           // sweeps after which the obstacles that are near are looked for again
-constexpr int kPlaces = 4;               // of a piece, between which a solid's nearest is looked for
+constexpr double kFinest = 1e-3;         // of a piece, to which the place nearest to a solid is looked for
 constexpr double kNearBy = 0.5;          // m, beyond what is kept, within which an obstacle counts as near
-constexpr double kOverRelaxation = 1.9;  // of each point's way: successive over-relaxation; 2 would not come to rest
+constexpr double kOverRelaxation = 1.6;  // of each point's way: successive over-relaxation; 1.9 rests at no corner
 constexpr double kBeyond = 5e-3;         // m, kept beyond the margin, for what the sweeps leave over
 constexpr double kSlowest = 0.3;         // m/s, as which a piece of no speed counts
 
@@ -123,14 +122,16 @@ class Band {
     const Vec3 half = 0.5 * (push.to - push.from);
     const Vec3 from = p_[k - 1] + half;
     const Vec3 way = p_[k] - half - from;
-    double s = 0.0;
-    double least = push.distance;
-    for (int i = 0; i <= kPlaces; ++i) {
-      const double share = static_cast<double>(i) / kPlaces;
-      const double distance = push.solid.distance(from + share * way);
-      if (distance >= least) continue;
-      least = distance;
-      s = share;
+    double s = 0.5;
+    double least = push.solid.distance(from + s * way);
+    for (double step = 0.25; step > kFinest; step *= 0.5) {  // the distance is convex along the piece
+      for (const double share : {s - step, s + step}) {
+        const double distance = push.solid.distance(from + share * way);
+        if (distance >= least) continue;
+        least = distance;
+        s = share;
+        break;
+      }
     }
     if (least < push.distance) move(k, s, (push.distance - least) * push.solid.outward(from + s * way));
   }

@@ -98,6 +98,16 @@ TEST(LoadScenario, ReadsEveryShapeAndMotion) {
   const auto vertices = std::get<VertexShape>(s.obstacles[4].shape).vertices;
   ASSERT_EQ(vertices.size(), 4U);
   EXPECT_EQ(vertices[3], Vec3(0, 0, 1));
+  EXPECT_EQ(s.obstacles[1].orientation, Vec3::Zero());
+  EXPECT_EQ(s.obstacles[1].yaw_rate, 0.0);
+  const Scenario turned = loaded(replaced(
+      replaced(kValidScenario, "box: [0.8, 0.9, 1.0]",
+               "cylinder: {radius: 0.3, height: 8}, orientation: [0.1, 0.2, 0.3], yaw_rate: -0.4"),
+      "vertices: [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "capsule: {radius: 0.02, a: [0, -4, 0], b: [0, 4, 1]}"));
+  EXPECT_EQ(turned.obstacles[1].shape, Shape(CylinderShape{0.3, 8}));
+  EXPECT_EQ(turned.obstacles[1].orientation, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(turned.obstacles[1].yaw_rate, -0.4);
+  EXPECT_EQ(turned.obstacles[4].shape, Shape(CapsuleShape{0.02, {0, -4, 0}, {0, 4, 1}}));
   const auto waypoints = std::get<WaypointsMotion>(s.obstacles[4].motion);
   EXPECT_EQ(waypoints.times, (std::vector<double>{0, 5, 9}));
   ASSERT_EQ(waypoints.points.size(), 3U);
@@ -171,7 +181,7 @@ TEST(LoadScenario, RefusesBadSensing) {
 TEST(LoadScenario, RefusesBadShapes) {
   const std::vector<BadCase> cases = {
       {"radius: 0.5", "radius: -0.5", 10, "obstacles[0].radius", "-0.5", "is not in (0, 1000]"},
-      {"radius: 0.5, ", "", 10, "obstacles[0]", "", "has no shape; expected exactly one of radius, box, vertices"},
+      {"radius: 0.5, ", "", 10, "obstacles[0]", "", "has no shape; expected exactly one of radius, box, cylinder, capsule, vertices"},
       {"radius: 0.5, ", "radius: 0.5, box: [1, 1, 1], ", 10, "obstacles[0]", "", "has the shapes radius, box"},
       {"box: [0.8, 0.9, 1.0]", "box: [0.8, 0, 1.0]", 11, "obstacles[1].box[1]", "0", "is not in (0, 1000]"},
       {"box: [0.8, 0.9, 1.0]", "box: 0.8", 11, "obstacles[1].box", "0.8", "is a number; expected a list"},
@@ -180,6 +190,17 @@ TEST(LoadScenario, RefusesBadShapes) {
       {"[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "[[1,2,3],[1,2,3]]", 14, "obstacles[4].vertices", "[[1, 2, 3], [1, 2, 3]]",
        "has an enclosing sphere of radius 0; expected one in (0, 1000]"},
       {"[0,1,0]", "[0,.nan,0]", 14, "obstacles[4].vertices[2][1]", ".nan", "not a finite number"},
+      {"radius: 0.5", "cylinder: {radius: 0.5}", 10, "obstacles[0].cylinder.height", "", "missing; expected a number"},
+      {"radius: 0.5", "cylinder: {radius: 0.5, height: -2}", 10, "obstacles[0].cylinder.height", "-2", "(0, 1000]"},
+      {"radius: 0.5", "capsule: {radius: 0, a: [0, 0, 0], b: [1, 0, 0]}", 10, "obstacles[0].capsule.radius", "0",
+       "is not in (0, 1000]"},
+      {"radius: 0.5", "capsule: {radius: 1, a: [0, 0, 0], c: [1, 0, 0]}", 10, "obstacles[0].capsule.c", "[1, 0, 0]",
+       "unknown key"},
+      {"radius: 0.5, ", "radius: 0.5, yaw_rate: 1, ", 10, "obstacles[0].yaw_rate", "1", "a sphere is the same"},
+      {"box: [0.8, 0.9, 1.0]", "box: [0.8, 0.9, 1.0], orientation: [1, 2]", 11, "obstacles[1].orientation", "[1, 2]",
+       "[x, y, z]"},
+      {"box: [0.8, 0.9, 1.0]", "box: [0.8, 0.9, 1.0], yaw_rate: 200", 11, "obstacles[1].yaw_rate", "200",
+       "is not in [-100, 100]"},
   };
   for (const BadCase& bad : cases) expect_refused(kValidScenario, bad, try_scenario);
 }

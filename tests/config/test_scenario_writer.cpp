@@ -60,6 +60,8 @@ TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
                         {BoxShape{{awkward(1), awkward(2), 3}},
                          TrefoilMotion{awkward_vector(1), awkward_vector(2), 1.1, -std::numbers::pi}},
                         {VertexShape{{awkward_vector(1), awkward_vector(2)}}, sine},
+                        {CylinderShape{awkward(4), awkward(5)}, sine, awkward_vector(6), -awkward(7)},
+                        {CapsuleShape{awkward(4), awkward_vector(5), awkward_vector(6)}, linear, {0, 0, awkward(8)}},
                         {SphereShape{12345678.0 / 1e5}, bounce},
                         {SphereShape{1}, WaypointsMotion{{0, awkward(3)}, {awkward_vector(8), awkward_vector(9)}}},
                         {SphereShape{1}, LinearMotion{{1, 2, -0.0}, {-0.0, 0, 0}}}};

@@ -30,17 +30,27 @@ std::string number(const Json& value, const char* unit) {
 Json shapes_json(const config::Scenario& scenario) {
   Json shapes = Json::array();
   for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
-    const config::Shape& shape = scenario.obstacles[i].shape;
+    const config::Obstacle& obstacle = scenario.obstacles[i];
+    const config::Shape& shape = obstacle.shape;
+    // What turns does so about its reference point.
+    const Vec3 center = obstacle.yaw_rate == 0.0 ? sim::world::bounding_sphere(shape).center : Vec3(Vec3::Zero());
     Json entry{{"id", sim::world::World::id(static_cast<int>(i))}};
     if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
       entry["box"] = log::vector_json(box->edges);
+    } else if (const auto* cylinder = std::get_if<config::CylinderShape>(&shape)) {
+      entry["cylinder"] = {{"radius", cylinder->radius}, {"height", cylinder->height}};
+    } else if (const auto* capsule = std::get_if<config::CapsuleShape>(&shape)) {
+      entry["capsule"] = {{"radius", capsule->radius},
+                          {"a", log::vector_json(capsule->a - center)},
+                          {"b", log::vector_json(capsule->b - center)}};
     } else if (const auto* hull = std::get_if<config::VertexShape>(&shape)) {
-      const Vec3 center = sim::world::bounding_sphere(shape).center;
       entry["vertices"] = Json::array();
       for (const Vec3& vertex : hull->vertices) entry["vertices"].push_back(log::vector_json(vertex - center));
     } else {
       continue;
     }
+    if (!obstacle.orientation.isZero(0.0)) entry["orientation"] = log::vector_json(obstacle.orientation);
+    if (obstacle.yaw_rate != 0.0) entry["yaw_rate"] = obstacle.yaw_rate;
     shapes.push_back(std::move(entry));
   }
   return shapes;

@@ -33,7 +33,8 @@ struct FlightLogOptions {
 /// that they read back to the same bits.
 ///
 /// header {type, format, scenario|mission, seed, version, parameters, ...; of a scenario `shapes`: [{id, box:
-/// edges}|{id, vertices}, ...] of the obstacles that are no spheres, about the `p` of their `obstacles` records, and,
+/// edges}|{id, cylinder: {radius, height}}|{id, capsule: {radius, a, b}}|{id, vertices}, ...], each with `orientation`
+/// and `yaw_rate` where it has them, of the obstacles that are no spheres, about the `p` of their `obstacles` records, and,
 /// where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with `type` and
 /// `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has
 /// several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks {tracks:

@@ -10,11 +10,13 @@
 #include <variant>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "sim/world/shapes.hpp"
 #include "tools/base/atomic_file.hpp"
 #include "tools/mcap/foxglove.hpp"
 #include "tools/mcap/writer.hpp"
 #include "tools/report/event_severity.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/report/shape_corners.hpp"
 
 namespace jink::tools::mcap {
 namespace {
@@ -217,24 +219,25 @@ class FlightExport {
   }
 
   void write_bodies() {
-    for (const auto& [id, shape] : flight_.shapes) {
-      if (const auto* hull = std::get_if<config::VertexShape>(&shape)) hulls_[id] = report::convex_hull(hull->vertices);
-    }
+    for (const auto& [id, obstacle] : flight_.shapes)
+      hulls_[id] = report::convex_hull(report::shape_corners(obstacle, 0.0));
     write_frames("/scene/obstacles", flight_.obstacles,
-                 [this](double, const report::Body& body) { return obstacle(body); });
+                 [this](double t, const report::Body& body) { return obstacle(t, body); });
     write_frames("/scene/tracks", flight_.tracks,
                  [this](double t, const report::Body& body) { return track(t, body); });
   }
 
-  [[nodiscard]] Entity obstacle(const report::Body& body) const {
+  [[nodiscard]] Entity obstacle(double t, const report::Body& body) const {
     Entity entity{.id = "obstacle " + std::to_string(body.id)};
     const auto shape = flight_.shapes.find(body.id);
     if (shape == flight_.shapes.end()) {
       entity.spheres.push_back({vector(body.position), body.radius, kObstacle});
-    } else if (const auto* box = std::get_if<config::BoxShape>(&shape->second)) {
+    } else if (const auto* box = std::get_if<config::BoxShape>(&shape->second.shape);
+               box != nullptr && sim::world::axes_at(shape->second, t).isIdentity(0.0)) {
       entity.cubes.push_back({vector(body.position), box->edges, kObstacle});
-    } else if (const auto* hull = std::get_if<config::VertexShape>(&shape->second)) {
-      entity.triangles.push_back({vector(body.position), hull->vertices, hulls_.at(body.id), kObstacle});
+    } else {
+      entity.triangles.push_back(
+          {vector(body.position), report::shape_corners(shape->second, t), hulls_.at(body.id), kObstacle});
     }
     return entity;
   }

@@ -114,7 +114,7 @@ class Scene {
   }
 
   /** The polyhedron of a true obstacle, undefined for a sphere and for tracks, whose shape nobody knows. */
-  solidOf(moment, body) { return moment.truth ? this.flight.solids.get(body.id) : undefined; }
+  solidOf(moment, body) { return moment.truth ? this.flight.solidAt(body.id, moment.t) : undefined; }
 
   add(p, draw) { this.items.push({depth: this.camera.view(p)[2], draw}); }
 

@@ -2,7 +2,7 @@
 // flights [{file, t [first, last];
 //   vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []};
 //   others [{number, radius|null, t, p, speed, clearance}] the further vehicles of a team;
-//   setpoints {t, p, speed}; shapes {id: {box}|{vertices, faces}} of obstacles that are no spheres;
+//   setpoints {t, p, speed}; shapes {id: {box}|{vertices, faces, yaw_rate?}} of obstacles that are no spheres;
 //   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz,ax,ay,az,age),...], ...]};
 //   plans [{t, ms, status, kept, missed, path [t,x,y,z,...], trust?, known? [{id, radius, path}]}];
 //   events [[t, name, detail, "good"|"warn"|"bad"|""]]; clearance null | {from: "true"|"tracks", t, d, min {t, d}};
@@ -114,11 +114,17 @@ class Flight {
     return found;
   }
 
-  /** The nearest surface to a point: {body, free, at}, free less the vehicle's radius; null without any. */
-  nearest(p, solid, others) {
+  /** An obstacle's polyhedron at t, undefined for a sphere. */
+  solidAt(id, t) {
+    const solid = this.solids.get(id);
+    return solid && turned(solid, solid.yawRate * Math.max(0, t));
+  }
+
+  /** The nearest surface to a point at t: {body, free, at}, free less the vehicle's radius; null without any. */
+  nearest(p, t, solid, others) {
     let nearest = null;
     for (const body of [...solid, ...others]) {
-      const {d, q} = toSurface(p, body, this.solids.get(body.id));
+      const {d, q} = toSurface(p, body, this.solidAt(body.id, t));
       if (!nearest || d - this.radius < nearest.free) nearest = {body, free: d - this.radius, at: q};
     }
     return nearest;
@@ -139,7 +145,7 @@ class Flight {
       return motion ? [{...motion, r: other.radius || 0, number: other.number, series: other}] : [];
     });
     const plan = this.planAt(t);
-    const nearest = vehicle ? this.nearest(vehicle.p, solid, others) : null;
+    const nearest = vehicle ? this.nearest(vehicle.p, t, solid, others) : null;
     return {t, over: time > this.t[1] + 1e-6, truth, tracks, solid, vehicle, others, nearest, plan,
             trust: plan ? plan.trust ?? Infinity : 0, setpoint: motionAt(this.setpoints, t)};
   }

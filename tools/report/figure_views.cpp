@@ -9,6 +9,7 @@
 #include "planner/geometry/obstacle_motion.hpp"
 #include "tools/report/convex_hull.hpp"
 #include "tools/report/figure_parts.hpp"
+#include "tools/report/shape_corners.hpp"
 
 namespace jink::tools::report {
 namespace {
@@ -118,19 +119,12 @@ const Sample* newest(const std::vector<Sample>& samples, double t) {
 }
 
 /// The corners of an obstacle that is no sphere; none of one that is.
-std::vector<Triple> corners_of(const FlightData& flight, const Body& body) {
+std::vector<Triple> corners_of(const FlightData& flight, const Body& body, double t) {
   std::vector<Triple> corners;
   const auto shape = flight.shapes.find(body.id);
   if (shape == flight.shapes.end()) return corners;
-  const auto add = [&](const Vec3& corner) { corners.push_back(triple(vector(body.position) + corner)); };
-  if (const auto* box = std::get_if<config::BoxShape>(&shape->second)) {
-    for (const unsigned i : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
-      const Vec3 side((i & 1U) != 0 ? 0.5 : -0.5, (i & 2U) != 0 ? 0.5 : -0.5, (i & 4U) != 0 ? 0.5 : -0.5);
-      add(side.cwiseProduct(box->edges));
-    }
-  } else if (const auto* hull = std::get_if<config::VertexShape>(&shape->second)) {
-    for (const Vec3& vertex : hull->vertices) add(vertex);
-  }
+  for (const Vec3& corner : shape_corners(shape->second, t))
+    corners.push_back(triple(vector(body.position) + corner));
   return corners;
 }
 
@@ -161,7 +155,7 @@ void add_obstacles(View& view) {
   Drawing shapes = view.drawing("obstacle", Kind::areas,
                                 {.colour = text_of(FigureColors::kObstacle), .width = 0.7, .edge = "#7a5510"});
   for (const Body& body : bodies) {
-    const std::vector<Triple> corners = corners_of(view.flight.data, body);
+    const std::vector<Triple> corners = corners_of(view.flight.data, body, frame->t);
     if (corners.empty())
       shapes.add_disc(body.position, body.radius);
     else

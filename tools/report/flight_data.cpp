@@ -34,6 +34,8 @@ Body body_of(const Json& record, bool moving) {
 // As config::load_scenario bounds them.
 constexpr double kLargest = 1e3;   // m, edge
 constexpr double kFarthest = 2e5;  // m, vertex from the centre
+constexpr double kTurned = 1e3;    // rad
+constexpr double kTurnRate = 100;  // rad/s
 constexpr std::size_t kMostVertices = 10000;
 constexpr std::size_t kMostVehicles = 100;
 
@@ -45,10 +47,26 @@ Triple bounded(const Json& value, const char* key, double low, double high) {
   return v;
 }
 
+double bounded_number(const Json& record, const char* key, double low, double high) {
+  const double x = log::number_of(record, key);
+  if (!(x >= low && x <= high)) refuse("\"" + std::string(key) + "\" is out of range");
+  return x;
+}
+
 config::Shape shape_of(const Json& record) {
   if (const auto box = record.find("box"); box != record.end()) {
     const Triple e = bounded(*box, "box", 0.0, kLargest);
     return config::BoxShape{{e[0], e[1], e[2]}};
+  }
+  if (const auto cylinder = record.find("cylinder"); cylinder != record.end()) {
+    return config::CylinderShape{bounded_number(*cylinder, "radius", 0.0, kLargest),
+                                 bounded_number(*cylinder, "height", 0.0, kLargest)};
+  }
+  if (const auto capsule = record.find("capsule"); capsule != record.end()) {
+    const Triple a = bounded(log::member(*capsule, "a"), "a", -kFarthest, kFarthest);
+    const Triple b = bounded(log::member(*capsule, "b"), "b", -kFarthest, kFarthest);
+    return config::CapsuleShape{bounded_number(*capsule, "radius", 0.0, kLargest), {a[0], a[1], a[2]},
+                                {b[0], b[1], b[2]}};
   }
   config::VertexShape hull;
   const Json& list = log::list_of(record, "vertices");
@@ -60,12 +78,18 @@ config::Shape shape_of(const Json& record) {
   return hull;
 }
 
-std::map<std::uint64_t, config::Shape> shapes_of(const Json& header) {
-  std::map<std::uint64_t, config::Shape> shapes;
+std::map<std::uint64_t, config::Obstacle> shapes_of(const Json& header) {
+  std::map<std::uint64_t, config::Obstacle> shapes;
   if (!header.contains("shapes")) return shapes;
   for (const Json& record : log::list_of(header, "shapes")) {
     if (!record.is_object()) refuse("\"shapes\" holds what is no object");
-    shapes[log::count_of(record, "id")] = shape_of(record);
+    config::Obstacle& obstacle = shapes[log::count_of(record, "id")];
+    obstacle.shape = shape_of(record);
+    if (const auto turned = record.find("orientation"); turned != record.end()) {
+      const Triple angles = bounded(*turned, "orientation", -kTurned, kTurned);
+      obstacle.orientation = {angles[0], angles[1], angles[2]};
+    }
+    if (record.contains("yaw_rate")) obstacle.yaw_rate = bounded_number(record, "yaw_rate", -kTurnRate, kTurnRate);
   }
   return shapes;
 }

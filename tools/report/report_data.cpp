@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "sim/world/shapes.hpp"
+#include "tools/report/shape_corners.hpp"
 #include "tools/report/convex_hull.hpp"
 #include "tools/report/event_severity.hpp"
 
@@ -119,20 +120,23 @@ Json plans_json(const std::vector<PlanRecord>& plans) {
   return list;
 }
 
-/// By id {box: edges} or {vertices: [x, y, z, ...], faces: [i, j, k, ...]}, about the body's position.
-Json shapes_json(const std::map<std::uint64_t, config::Shape>& shapes) {
+/// By id {box: edges} or {vertices: [x, y, z, ...], faces: [i, j, k, ...], yaw_rate?}, about the body's position.
+Json shapes_json(const std::map<std::uint64_t, config::Obstacle>& shapes) {
   Json by_id = Json::object();
-  for (const auto& [id, shape] : shapes) {
+  for (const auto& [id, obstacle] : shapes) {
     Json& entry = by_id[std::to_string(id)];
-    if (const auto* box = std::get_if<config::BoxShape>(&shape)) {
+    const auto* box = std::get_if<config::BoxShape>(&obstacle.shape);
+    if (box != nullptr && obstacle.orientation.isZero(0.0) && obstacle.yaw_rate == 0.0) {
       entry["box"] = {millimetres(box->edges.x()), millimetres(box->edges.y()), millimetres(box->edges.z())};
-    } else if (const auto* hull = std::get_if<config::VertexShape>(&shape)) {
-      for (const Vec3& v : hull->vertices) append(entry["vertices"], {v.x(), v.y(), v.z()});
-      entry["faces"] = Json::array();
-      for (const Triangle& face : convex_hull(hull->vertices)) {
-        for (const std::size_t corner : face) entry["faces"].push_back(corner);
-      }
+      continue;
     }
+    const std::vector<Vec3> corners = shape_corners(obstacle, 0.0);
+    for (const Vec3& v : corners) append(entry["vertices"], {v.x(), v.y(), v.z()});
+    entry["faces"] = Json::array();
+    for (const Triangle& face : convex_hull(corners)) {
+      for (const std::size_t corner : face) entry["faces"].push_back(corner);
+    }
+    if (obstacle.yaw_rate != 0.0) entry["yaw_rate"] = obstacle.yaw_rate;
   }
   return by_id;
 }
@@ -168,12 +172,14 @@ std::optional<double> nearest_track(const Triple& vehicle, double radius, const 
   return least;
 }
 
-/// From a point to the true surface.
-double surface_distance(const FlightData& flight, const Body& body, const Triple& from) {
+/// From a point to the true surface at a time.
+double surface_distance(const FlightData& flight, const Body& body, double t, const Triple& from) {
   const auto shape = flight.shapes.find(body.id);
   if (shape == flight.shapes.end()) return distance(from, body.position) - body.radius;
   const auto vector = [](const Triple& v) { return Vec3(v[0], v[1], v[2]); };
-  return sim::world::distance(shape->second, vector(body.position), vector(from));
+  const Eigen::Matrix3d axes = sim::world::axes_at(shape->second, t);
+  return sim::world::distance(shape->second.shape, Vec3::Zero(),
+                              axes.transpose() * (vector(from) - vector(body.position)));
 }
 
 const std::vector<MotionSample>& truth_of(const FlightData& flight, std::size_t vehicle) {
@@ -267,7 +273,7 @@ std::vector<ClearanceSample> true_clearance(const FlightData& flight, std::size_
     std::optional<double> least;
     if (frame != flight.obstacles.end() && frame->t == sample.t) {
       for (const Body& body : frame->bodies) {
-        const double free = surface_distance(flight, body, sample.position);
+        const double free = surface_distance(flight, body, sample.t, sample.position);
         if (!least || free < *least) least = free;
       }
     }

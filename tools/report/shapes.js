@@ -36,9 +36,10 @@ function polyhedron(shape) {
     const key = a < b ? `${a} ${b}` : `${b} ${a}`;
     if (!sides.has(key)) sides.set(key, [a, b, f, f]); else sides.get(key)[3] = f;
   }));
-  // Where two faces lie in one plane, the line between them is none of the shape's.
-  const flat = (a, b) => a !== b && dot(solid.normals[a], solid.normals[b]) > 0.9999;
+  // Where two faces lie nearly in one plane, as on what is round, the line between them is none of the shape's.
+  const flat = (a, b) => a !== b && dot(solid.normals[a], solid.normals[b]) > 0.97;
   solid.edges = [...sides.values()].filter(([, , f, g]) => !flat(f, g));
+  solid.yawRate = shape.yaw_rate || 0;
   return solid;
 }
 
@@ -58,6 +59,14 @@ function nearestOnTriangle(p, [a, b, c], normal) {
   if (inside && dot(normal, normal) > 0.5) return minus(p, times(normal, dot(minus(p, a), normal)));
   const ends = [[a, b], [b, c], [c, a]].map(([q, r]) => nearestOnSegment(p, q, r));
   return ends.reduce((best, q) => (length(p, q) < length(p, best) ? q : best));
+}
+
+/** A solid about the vertical, turned by an angle; of one that does not turn nothing changes. */
+function turned(solid, angle) {
+  if (!angle) return solid;
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  const turn = ([x, y, z]) => [c * x - s * y, s * x + c * y, z];
+  return {...solid, corners: solid.corners.map(turn), normals: solid.normals.map(turn)};
 }
 
 /** Distance d to a body's surface, and the surface's point q. Inside a hull d is 0, inside others negative. */

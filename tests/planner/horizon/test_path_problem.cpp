@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planner/base/random.hpp"
+#include "planner/base/solid.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::planner::horizon {
@@ -408,6 +409,79 @@ TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
   EXPECT_LT(violated, 590);
   EXPECT_GT(kept, 60U * 33U);
   EXPECT_LT(kept, 60U * 110U);
+}
+
+/// The same tracks, of solids within their spheres, which turn or do not.
+std::vector<base::Track> random_solids(base::RandomStream& random) {
+  std::vector<base::Track> tracks = random_tracks(random);
+  for (base::Track& track : tracks) {
+    const Vec3 half = 1.5 * random_vector(random, 1.0).cwiseAbs();
+    const double corner = random.below(2) == 0 ? 0.0 : random.uniform(0.0, 0.5);
+    const double rounding = random.below(2) == 0 ? 0.0 : random.uniform(0.0, 0.3);
+    track.body.solid = random.below(5) == 0
+                           ? base::Solid::hull({random_vector(random, 1.0), random_vector(random, 1.0),
+                                                random_vector(random, 1.0), random_vector(random, 1.0)})
+                           : base::Solid::prism(half, corner, rounding, {0.3 * random_vector(random, 1.0), Eigen::Matrix3d::Identity()});
+    track.body.yaw = random.uniform(-3.0, 3.0);
+    track.body.yaw_rate = random.below(2) == 0 ? 0.0 : random.uniform(-2.0, 2.0);
+    track.radius = track.body.solid->reach() + random.uniform(0.0, 0.2);
+  }
+  return tracks;
+}
+
+/// f3 and violation from the distances of many places of each step.
+optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSettings& s, const PathRequest& r,
+                             const base::TimedPath& path) {
+  constexpr int kPlaces = 20;
+  optimizer::Cost cost;
+  for (int n = 0; n < problem.steps(); ++n) {
+    const double begin = n * s.step;
+    const double weight = s.step / (0.5 + begin);
+    for (const base::Track& track : r.tracks) {
+      double distance = base::kInfinity;
+      for (int i = 0; i <= kPlaces; ++i) {
+        const double t = begin + s.step * i / kPlaces;
+        const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
+        distance = std::min(distance, PlacedSolid(track.body, c, t).distance(base::sample(path, t).position));
+      }
+      const double ahead = begin + s.step + track.age;
+      const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
+      const double extra =
+          std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
+      const double hard = r.vehicle.radius + r.margin;
+      cost.violation += weight * std::max(0.0, hard - distance);
+      const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+      cost.f[2] += weight * depth * depth;
+    }
+  }
+  return cost;
+}
+
+// Of solids the distance is that of a few places in a step, so a little more than the least.
+TEST(PathProblem, SolidsCostTheirTrueDistances) {
+  const base::HorizonSettings settings;
+  PathProblem problem{settings};
+  base::RandomStream random(8);
+  int violated = 0;
+  for (int round = 0; round < 40; ++round) {
+    const std::vector<base::Track> tracks = random_solids(random);
+    PathRequest r = request();
+    r.velocity = random_vector(random, 2.0);
+    r.tracks = tracks;
+    r.margin = 0.35;
+    r.track_acceleration = 0.4;
+    r.acceleration_trust = 0.7;
+    problem.prepare(r);
+    for (int i = 0; i < 5; ++i) {
+      const std::vector<double> x = random_variables(random, problem);
+      const optimizer::Cost cost = evaluate(problem, x);
+      const optimizer::Cost expected = sampled_cost(problem, settings, r, problem.motion(x));
+      ASSERT_NEAR(cost.f[2], expected.f[2], 0.02 + 0.1 * expected.f[2]) << round;
+      ASSERT_NEAR(cost.violation, expected.violation, 0.01 + 0.05 * expected.violation) << round;
+      violated += cost.violation > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(violated, 20);
 }
 
 /// Requests that strain the bounds of where the vehicle can be: fast away from the target, beyond the limits of speed

@@ -13,7 +13,7 @@ namespace jink::sim::testing {
 using planner::base::RandomStream;
 
 inline constexpr std::uint64_t kMotionKinds = 5;
-inline constexpr std::uint64_t kShapeKinds = 3;
+inline constexpr std::uint64_t kShapeKinds = 5;
 
 inline Vec3 random_vector(RandomStream& random, double lo, double hi) {
   const double x = random.uniform(lo, hi);
@@ -60,10 +60,23 @@ inline config::Motion random_motion(RandomStream& random, std::uint64_t kind) {
 inline config::Shape random_shape(RandomStream& random, std::uint64_t kind) {
   if (kind == 0) return config::SphereShape{random.uniform(0.05, 1.5)};
   if (kind == 1) return config::BoxShape{random_vector(random, 0.05, 2)};
+  if (kind == 2) return config::CylinderShape{random.uniform(0.05, 1), random.uniform(0.05, 3)};
+  if (kind == 3) {
+    return config::CapsuleShape{random.uniform(0.05, 1), random_vector(random, -1, 1), random_vector(random, -1, 1)};
+  }
   config::VertexShape shape;
   const std::uint64_t count = 1 + random.below(12);
   for (std::uint64_t i = 0; i < count; ++i) shape.vertices.push_back(random_vector(random, -1, 1));
   return shape;
+}
+
+/// Half of them turned somehow, half of these turning.
+inline config::Obstacle random_obstacle(RandomStream& random, const config::Shape& shape, const config::Motion& motion) {
+  config::Obstacle obstacle{shape, motion};
+  const std::uint64_t turned = random.below(4);
+  if (turned > 1) obstacle.orientation = random_vector(random, -3, 3);
+  if (turned > 2) obstacle.yaw_rate = random.uniform(-4, 4);
+  return obstacle;
 }
 
 }  // namespace jink::sim::testing

@@ -75,6 +75,9 @@ TEST(BoundingSphere, OfEachShape) {
   EXPECT_EQ(bounding_sphere(config::SphereShape{0.5}).center, kOrigin);
   EXPECT_DOUBLE_EQ(bounding_sphere(config::BoxShape{{2, 4, 4}}).radius, 3.0);
   EXPECT_EQ(bounding_sphere(config::BoxShape{{2, 4, 4}}).center, kOrigin);
+  EXPECT_DOUBLE_EQ(bounding_sphere(config::CylinderShape{3, 8}).radius, 5.0);
+  EXPECT_DOUBLE_EQ(bounding_sphere(config::CapsuleShape{0.5, {0, 0, 0}, {4, 0, 0}}).radius, 2.5);
+  EXPECT_EQ(bounding_sphere(config::CapsuleShape{0.5, {0, 0, 0}, {4, 0, 0}}).center, Vec3(2, 0, 0));
   const Sphere corner = bounding_sphere(kCorner);
   EXPECT_NEAR(corner.radius, std::sqrt(2.0 / 3.0), 1e-14);
   EXPECT_NEAR((corner.center - Vec3::Constant(1.0 / 3.0)).norm(), 0.0, 1e-14);
@@ -96,6 +99,25 @@ TEST(BoxDistance, FaceEdgeCornerAndInside) {
   EXPECT_DOUBLE_EQ(distance(shape, reference, {10, 0, 0}), -1.0);       // the way out is along x
   EXPECT_DOUBLE_EQ(distance(shape, reference, {10, 1.75, 0}), -0.25);   // along y
   EXPECT_DOUBLE_EQ(distance(shape, reference, {11, 0.5, 0.5}), 0.0);
+}
+
+TEST(CylinderDistance, SideLidRimAndInside) {
+  const config::Shape shape = config::CylinderShape{2.0, 6.0};
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {3, 4, 1}), 3.0);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {1, 1, -4}), 1.0);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {0, 5, 7}), 5.0);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {1.5, 0, 0}), -0.5);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {0, 0, 2.75}), -0.25);
+  EXPECT_DOUBLE_EQ(distance(shape, {0, 0, 3}, {0, 0, 3}), deepest(shape));
+}
+
+TEST(CapsuleDistance, SideEndAndInside) {
+  const config::Shape shape = config::CapsuleShape{0.5, {0, 0, 0}, {4, 0, 0}};
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {1, 3, 4}), 4.5);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {7, 4, 0}), 4.5);
+  EXPECT_DOUBLE_EQ(distance(shape, kOrigin, {2, 0, 0.25}), -0.25);
+  EXPECT_DOUBLE_EQ(segment_distance(shape, kOrigin, {2, -1, 2}, {2, 1, 2}).distance, 1.5);
+  EXPECT_DOUBLE_EQ(distance(config::CapsuleShape{0.5, {1, 0, 0}, {1, 0, 0}}, kOrigin, {1, 0, 2}), 1.5);
 }
 
 TEST(HullDistance, VertexEdgeFaceAndInside) {

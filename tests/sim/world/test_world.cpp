@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "planner/geometry/validity.hpp"
+#include "planner/verify/verifier.hpp"
 #include "sim/world/shapes.hpp"
 #include "tests/sim/examples.hpp"
 #include "tests/sim/world/random_obstacles.hpp"
@@ -92,6 +94,44 @@ TEST(World, ClearanceIsTheMinimumOverAllObstacles) {
       nearest = std::min(nearest, distance(shape, world.obstacle(i, 1.0).position, p));
     }
     EXPECT_NEAR(world.clearance(p, 1.0), nearest - kVehicleRadius, 1e-9) << seed;
+  }
+}
+
+TEST(World, ObstaclesAreTurnedAndTurn) {
+  // A plank of 4 m along east, turned by a right angle to the north, and on by another in a second.
+  config::Obstacle plank{config::BoxShape{{4, 0.2, 1}}, config::LinearMotion{{1, 0, 0}}};
+  plank.orientation.x() = 0.5 * std::numbers::pi;
+  const World standing(scenario_with({plank}));
+  EXPECT_NEAR(standing.clearance({1, 3, 0}, 0.0), 1.0 - kVehicleRadius, 1e-12);
+  EXPECT_NEAR(standing.clearance({4, 0, 0}, 5.0), 2.9 - kVehicleRadius, 1e-12);
+  plank.yaw_rate = 0.5 * std::numbers::pi;
+  const World turning(scenario_with({plank}));
+  EXPECT_NEAR(turning.clearance({1, 3, 0}, -1.0), 1.0 - kVehicleRadius, 1e-12);
+  EXPECT_NEAR(turning.clearance({1, 3, 0}, 1.0), 2.9 - kVehicleRadius, 1e-12);
+  // In a second its end comes past who hovers 1.9 m from its axis.
+  EXPECT_NEAR(turning.sweep({2.9, 0, 0}, 0.0, {2.9, 0, 0}, 1.0).min_clearance, -0.1 - kVehicleRadius, 1e-5);
+  // Pitched by a right angle it stands on end.
+  plank.orientation = {0.0, 0.5 * std::numbers::pi, 0.0};
+  plank.yaw_rate = 0.0;
+  EXPECT_NEAR(World(scenario_with({plank})).clearance({1, 0, 3}, 0.0), 1.0 - kVehicleRadius, 1e-12);
+}
+
+// What a track tells is the shape that is there: from afar, near by and inside, whatever the shape and its turn.
+TEST(World, ExactTracksHaveTheTrueSurface) {
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    RandomStream random(33, seed);
+    const config::Shape shape = testing::random_shape(random, seed % testing::kShapeKinds);
+    const config::Motion motion = testing::random_motion(random, seed % testing::kMotionKinds);
+    const World world(scenario_with({testing::random_obstacle(random, shape, motion)}));
+    const double t = random.uniform(0, 8);
+    const planner::base::Track track = world.exact_track(0, t);
+    ASSERT_TRUE(planner::geometry::is_valid(track)) << seed;
+    const Vec3 p = track.position + testing::random_vector(random, -4, 4);
+    const planner::base::TimedPath here{{0.0, p, Vec3::Zero(), Vec3::Zero()}};
+    planner::verify::VerifierInput input;
+    input.path = here;
+    input.tracks = std::span(&track, 1);
+    EXPECT_NEAR(planner::verify::verify(input).min_clearance, world.distance(0, p, t), 1e-8) << seed;
   }
 }
 
@@ -210,7 +250,8 @@ TEST(Sweep, IsTheMinimumOfTheClearance) {
     std::vector<config::Obstacle> obstacles;
     for (std::uint64_t i = 0; i < 1 + seed % 4; ++i) {
       const config::Shape shape = testing::random_shape(random, random.below(testing::kShapeKinds));
-      obstacles.push_back({shape, testing::random_motion(random, (seed + i) % testing::kMotionKinds)});
+      obstacles.push_back(testing::random_obstacle(
+          random, shape, testing::random_motion(random, (seed + i) % testing::kMotionKinds)));
     }
     const World world(scenario_with(std::move(obstacles)));
     const Vec3 p0 = testing::random_vector(random, -3, 3);
@@ -244,7 +285,8 @@ TEST(Sweep, OfTwoHalvesIsThatOfTheWhole) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     RandomStream random(32, seed);
     const config::Shape shape = testing::random_shape(random, seed % testing::kShapeKinds);
-    const World world(scenario_with({{shape, testing::random_motion(random, seed % testing::kMotionKinds)}}));
+    const config::Motion motion = testing::random_motion(random, seed % testing::kMotionKinds);
+    const World world(scenario_with({testing::random_obstacle(random, shape, motion)}));
     const Vec3 p0 = testing::random_vector(random, -5, 5);
     const Vec3 p1 = testing::random_vector(random, -5, 5);
     const double whole = world.sweep(p0, 1.0, p1, 4.0).min_clearance;

@@ -81,7 +81,7 @@ void print(const std::vector<std::unique_ptr<Flight>>& flights) {
     const Flight& f = *flight;
     const double p50 = median(f.ms);
     const double p99 = quantile(f.ms, 0.99);
-    table.row({fmt::format("{}", f.shape.obstacles),
+    table.row({fmt::format("{}{}", f.shape.obstacles, f.shape.boxes ? " boxes" : ""),
                fmt::format("{:.0f} x {:.0f} x {:.0f}", f.shape.size.x(), f.shape.size.y(), f.shape.size.z()),
                fmt::format("{:.0f}", f.shape.mission), fmt::format("{}", f.ms.size()), fmt::format("{:.2f}", p50),
                fmt::format("{:.2f}", p99), fmt::format("{:.2f}", quantile(f.ms, 1.0)),
@@ -106,6 +106,9 @@ void bench_horizon(const Options& options) {
   planner::base::WorkerPool pool(options.cores);
   std::vector<std::unique_ptr<Flight>> flights;
   for (const int obstacles : {20, 200, 2000}) flights.push_back(std::make_unique<Flight>(world_of(obstacles)));
+  MovingWorldShape boxes = world_of(20);
+  boxes.boxes = true;
+  flights.push_back(std::make_unique<Flight>(boxes));
   MovingWorldShape far = world_of(2000);
   far.mission = kFarShare * far.size.x();
   flights.push_back(std::make_unique<Flight>(far));

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/lab/bench/moving_world.hpp"
 
+#include <numbers>
+
 #include "planner/base/random.hpp"
+#include "sim/world/shapes.hpp"
 
 namespace jink::tools::lab::bench {
 namespace {
@@ -9,6 +12,9 @@ namespace {
 constexpr double kLeastRadius = 0.3;  // m
 constexpr double kLargestRadius = 0.6;
 constexpr double kLargestSpeed = 3.0;  // m/s
+constexpr double kLeastEdge = 0.5;     // m
+constexpr double kLargestEdge = 4.0;   // m
+constexpr double kFastestTurn = 0.5;   // rad/s
 constexpr double kStartClearance = 3.0;
 
 Vec3 uniform(const Vec3& min, const Vec3& max, planner::base::RandomStream& random) {
@@ -33,14 +39,21 @@ config::Scenario scenario_of(const MovingWorldShape& shape, std::uint64_t seed) 
   scenario.target = centre + Vec3(0.5 * shape.mission, 0.0, 0.0);
   planner::base::RandomStream random(seed);
   while (scenario.obstacles.size() < static_cast<std::size_t>(shape.obstacles)) {
-    const double radius = random.uniform(kLeastRadius, kLargestRadius);
+    config::Obstacle obstacle{config::SphereShape{random.uniform(kLeastRadius, kLargestRadius)}, {}};
+    if (shape.boxes) {
+      obstacle.shape = config::BoxShape{uniform(Vec3::Constant(kLeastEdge), Vec3::Constant(kLargestEdge), random)};
+      obstacle.orientation = uniform(Vec3::Constant(-std::numbers::pi), Vec3::Constant(std::numbers::pi), random);
+      obstacle.yaw_rate = random.uniform(-kFastestTurn, kFastestTurn);
+    }
+    const double radius = sim::world::bounding_sphere(obstacle).radius;
     config::BounceMotion motion;
     motion.min = scenario.world->min + Vec3::Constant(radius);
     motion.max = scenario.world->max - Vec3::Constant(radius);
     motion.position = uniform(motion.min, motion.max, random);
     motion.velocity = random.uniform(0.0, kLargestSpeed) * direction(random);
     if ((motion.position - scenario.start).norm() < kStartClearance) continue;
-    scenario.obstacles.push_back({config::SphereShape{radius}, motion});
+    obstacle.motion = motion;
+    scenario.obstacles.push_back(obstacle);
   }
   return scenario;
 }

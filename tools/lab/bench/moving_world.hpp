@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume full of bouncing spheres, for replanning.
+// A volume full of bouncing spheres or boxes, for replanning.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@ struct MovingWorldShape {
   int obstacles = 20;
   Vec3 size{40.0, 20.0, 8.0};  ///< of the volume, m
   double mission = 36.0;       ///< between the targets, along x through the middle, m
+  bool boxes = false;          ///< of 0.5 to 4 m, which turn, in place of the spheres
 };
 
 /// The worlds of the benchmarks. The mission is the same in all, so that the obstacles are what differs.
