@@ -14,6 +14,7 @@
 #include "config/error.hpp"
 #include "config/scenario.hpp"
 #include "sim/flight/closed_loop.hpp"
+#include "planner/base/solid.hpp"
 #include "tests/support/repetitions.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/cli/summaries.hpp"
@@ -194,6 +195,38 @@ TEST(FlightReplay, PlansAmongATeamsPathsAreRepeated) {
   EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
   changed["from"]["paths"] = Json::array({{{"id", 1}, {"points", Json::array()}}});
   EXPECT_THROW(compare(folder.log(header + "\n" + changed.dump() + "\n")), std::runtime_error);
+}
+
+// A prism and a hull decide, and all of them is recorded: with another edge, yaw or vertex the plan is another one.
+TEST(FlightReplay, PlansAmongSolidsAreRepeated) {
+  const support::Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  using planner::base::Solid;
+  std::vector<planner::base::Track> tracks{sphere(1, {6, 0.2, 2}, {0, 0, 0}, 2.0), sphere(2, {10, 1, 2}, {0, 0, 0}, 3.0)};
+  tracks[0].body = {Solid::box({0.5, 3.1, 1.7}, {{0.0, 0.1, 0.0}, Eigen::Matrix3d::Identity()}), 1.0 / 3.0, -0.2};
+  tracks[1].body = {Solid::hull({{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1.0 / 3.0, -1, 1}}), 0.0, 0.0};
+  plans.make(job(0, tracks), std::chrono::seconds(10));
+  plans.close();
+  EXPECT_TRUE(compare(file).differences.empty());
+  const auto [header, line] = first_lines(file);
+  const auto differences = [&, head = header](const Json& record) {
+    return compare(folder.log(head + "\n" + record.dump() + "\n")).differences.size();
+  };
+  const Json recorded = Json::parse(line);
+  ASSERT_EQ(recorded["from"]["tracks"][0][14]["prism"].size(), 17U);
+  Json changed = recorded;
+  changed["from"]["tracks"][0][14]["prism"][1] = 0.9;
+  EXPECT_EQ(differences(changed), 1U);
+  changed = recorded;
+  changed["from"]["tracks"][0][14]["yaw"] = 0.9;
+  EXPECT_EQ(differences(changed), 1U);
+  for (const Json& bad : {Json({{"yaw", 0}, {"yaw_rate", 0}, {"prism", {1, 2, 3}}}), Json(3),
+                          Json({{"yaw", 0}, {"yaw_rate", 0}, {"hull", {9, 9, 9}}}),
+                          Json({{"yaw", 0}, {"yaw_rate", 0}, {"hull", Json::array()}})}) {
+    changed["from"]["tracks"][0][14] = bad;
+    EXPECT_THROW(differences(changed), std::runtime_error) << bad;
+  }
 }
 
 /// That a flag of the request is recorded, and decides; a log from before it was says nothing of it, and is read.

@@ -25,7 +25,9 @@ using Json = nlohmann::json;
 constexpr char kHeader[] =
     R"({"type":"header","format":"jink-log/1","version":"0.1.0","scenario":"crossing","seed":1,"start":[0,0,1.5],)"
     R"("target":[20,0,1.5],"vehicle":{"radius":0.25},"world":null,"parameters":{"horizon.step":"0.1"},)"
-    R"("shapes":[{"id":3,"box":[1,2,3]},{"id":4,"vertices":[[-1,-1,-1],[1,-1,-1],[0,1,-1],[0,0,1]]}]})"
+    R"("shapes":[{"id":3,"box":[1,2,3]},{"id":4,"vertices":[[-1,-1,-1],[1,-1,-1],[0,1,-1],[0,0,1]]},)"
+    R"({"id":5,"cylinder":{"radius":0.5,"height":4},"orientation":[0,1.5707963267948966,0]},)"
+    R"({"id":6,"capsule":{"radius":0.25,"a":[-2,0,0],"b":[2,0,0]},"yaw_rate":1.5707963267948966}]})"
     "\n";
 constexpr char kDataBegin[] = "id=\"flight-data\">";
 
@@ -186,6 +188,19 @@ TEST(FlightReport, MeasuresToTheTrueShapeAndShowsIt) {
   EXPECT_EQ(data["shapes"]["4"]["vertices"].size(), 12U);
   EXPECT_EQ(data["shapes"]["4"]["faces"].size(), 12U);  // a tetrahedron's four
   EXPECT_FALSE(data["header"].contains("shapes"));      // they are told once
+}
+
+TEST(FlightReport, MeasuresToShapesThatAreTurnedAndTurn) {
+  // A cylinder that lies along east.
+  std::string log = kHeader + motion("truth", 0.0, {0, 2, 0}, {0, 0, 0}) + obstacle(0.0, 5, {0, 0, 0}, 2.06);
+  EXPECT_NEAR(report_of(log)["clearance"]["min"]["d"], 1.5 - 0.25, 1e-3);
+  // A capsule that has turned north after a second.
+  log = kHeader + motion("truth", 1.0, {3, 0, 0}, {0, 0, 0}) + obstacle(1.0, 6, {0, 0, 0}, 2.25);
+  const Json data = report_of(log);
+  EXPECT_NEAR(data["clearance"]["min"]["d"], 2.75 - 0.25, 1e-3);
+  EXPECT_FALSE(data["shapes"]["5"].contains("yaw_rate"));
+  EXPECT_GT(data["shapes"]["5"]["faces"].size(), 3U * 60U);
+  EXPECT_NEAR(data["shapes"]["6"]["yaw_rate"], 1.570796, 1e-6);
 }
 
 TEST(FlightReport, MeasuresTheVehiclesOfATeamAgainstEachOther) {
