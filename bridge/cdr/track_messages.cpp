@@ -7,15 +7,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "bridge/cdr/input.hpp"
 #include "bridge/frames/conversions.hpp"
+#include "planner/base/solid.hpp"
 
 namespace jink::bridge::cdr {
 
 namespace {
 
+using planner::base::Solid;
 using planner::base::Track;
 
 constexpr std::size_t kWireTrack_bytes = 8 + 9 * 8 + 3 * 8;
@@ -49,6 +53,7 @@ constexpr double kNoInformation = 1e4;
 
 enum class ShapeType : std::uint8_t { kBoundingBox = 0, kCylinder = 1, kPolygon = 2 };
 constexpr std::uint8_t kOrientationUnavailable = 0;
+constexpr double kFastestTurn = 10.0;  // rad/s
 
 Eigen::Quaterniond take_quaternion(CdrInput& input) {
   const Vec3 vec = take_vec3(input);
@@ -78,29 +83,53 @@ double take_sigma(CdrInput& input) {
   return std::sqrt(largest);
 }
 
-double take_radius(CdrInput& input) {
+// A shape in an object's own frame. The radius is that of the sphere around it.
+struct ObjectShape {
+  double radius = kNaN;
+  std::shared_ptr<const Solid> solid;
+};
+
+// A footprint and a height as the vertices of their hull; none of more than a sensor's cluster has.
+std::shared_ptr<const Solid> prism_over(const std::vector<Vec3>& footprint, double height, const Eigen::Matrix3d& axes) {
+  constexpr std::size_t kMostPoints = 64;
+  if (footprint.size() > kMostPoints) return nullptr;
+  std::vector<Vec3> vertices;
+  for (const Vec3& point : footprint) {
+    for (const double z : {-0.5 * height, 0.5 * height}) vertices.emplace_back(axes * (point + Vec3(0.0, 0.0, z)));
+  }
+  return Solid::hull(std::move(vertices));
+}
+
+// The solid is turned as the object's axes are, which may be NaN.
+ObjectShape take_shape(CdrInput& input, const Eigen::Matrix3d& axes) {
   const auto type = static_cast<ShapeType>(input.take<std::uint8_t>());
-  double footprint = 0.0;  // its farthest point from the object's centre
-  bool finite = true;
+  std::vector<Vec3> footprint;
+  double farthest = 0.0;  // of its points from the object's centre
+  bool finite = axes.allFinite();
   for (std::uint32_t points = input.take_length(kPoint32_bytes); points > 0; --points) {
     const auto x = static_cast<double>(input.take<float>());
     const auto y = static_cast<double>(input.take<float>());
     input.take<float>();
     const double distance = std::hypot(x, y);
-    footprint = std::max(footprint, distance);
+    footprint.emplace_back(x, y, 0.0);
+    farthest = std::max(farthest, distance);
     finite = finite && std::isfinite(distance);
   }
   const Vec3 size = take_vec3(input);
-  if (!finite || !size.allFinite() || size.minCoeff() < 0.0) return kNaN;
+  if (!finite || !size.allFinite() || size.minCoeff() < 0.0) return {};
+  const Solid::Pose pose{Vec3::Zero(), axes};
   switch (type) {
-    case ShapeType::kBoundingBox:
-      return 0.5 * size.norm();
-    case ShapeType::kCylinder:  // x and y are its diameter
-      return 0.5 * std::hypot(std::max(size.x(), size.y()), size.z());
+    case ShapeType::kCylinder: {  // x and y are its diameter
+      const double diameter = std::max(size.x(), size.y());
+      return {0.5 * std::hypot(diameter, size.z()), Solid::cylinder(0.5 * diameter, size.z(), pose)};
+    }
     case ShapeType::kPolygon:
-      return footprint > 0.0 ? std::hypot(footprint, 0.5 * size.z()) : 0.5 * size.norm();
+      if (farthest > 0.0) return {std::hypot(farthest, 0.5 * size.z()), prism_over(footprint, size.z(), axes)};
+      [[fallthrough]];
+    case ShapeType::kBoundingBox:
+      return {0.5 * size.norm(), Solid::box(size, pose)};
   }
-  return kNaN;
+  return {};
 }
 
 // The rotation from the object's frame to the map; of NaN where there is no telling.
@@ -125,7 +154,7 @@ Track take_object(CdrInput& input) {
   const Eigen::Quaterniond orientation = take_quaternion(input);
   track.position_sigma = take_sigma(input);
   const Vec3 velocity = take_vec3(input);
-  take_vec3(input);  // angular
+  const Vec3 turning = take_vec3(input);
   track.velocity_sigma = take_sigma(input);
   const Vec3 acceleration = take_vec3(input);
   take_vec3(input);  // angular
@@ -135,7 +164,11 @@ Track take_object(CdrInput& input) {
   const Eigen::Matrix3d to_map = rotation(orientation, available);
   track.velocity = to_map * velocity;
   track.acceleration = to_map * acceleration;
-  track.radius = take_radius(input);
+  const ObjectShape shape = take_shape(input, to_map);
+  track.radius = shape.radius;
+  // What turns too fast to be believed may be turned anyhow: all of the sphere.
+  const double yaw_rate = (to_map * turning).z();
+  if (std::abs(yaw_rate) <= kFastestTurn) track.body = {shape.solid, 0.0, yaw_rate};
   return track;
 }
 

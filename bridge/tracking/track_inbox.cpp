@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/geometry/validity.hpp"
+
 namespace jink::bridge::tracking {
 
 // Each comparison is false for NaN.
@@ -14,6 +16,7 @@ const char* refusal(const planner::base::Track& t) {
   if (!(t.velocity.norm() <= L::kVelocity)) return "velocity";
   if (!(t.acceleration.norm() <= L::kAcceleration)) return "acceleration";
   if (!(t.radius > 0.0 && t.radius <= L::kRadius)) return "radius";
+  if (!planner::geometry::is_valid(t.body, t.radius)) return "body";
   if (!(t.position_sigma >= 0.0 && t.position_sigma <= L::kSigma)) return "position_sigma";
   if (!(t.velocity_sigma >= 0.0 && t.velocity_sigma <= L::kSigma)) return "velocity_sigma";
   return nullptr;

@@ -14,6 +14,8 @@
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/tracks.hpp"
+#include "planner/base/solid.hpp"
+#include "planner/geometry/validity.hpp"
 #include "tests/bridge/dds/dds_testing.hpp"
 #include "tests/support/child_process.hpp"
 
@@ -110,6 +112,44 @@ TEST(AutowareObjects, HaveTheRadiusOfTheSphereAroundTheirShape) {
   o.shape().footprint().points().clear();
   o.shape().dimensions().z(7.0);
   EXPECT_DOUBLE_EQ(track_of(o).radius, 5.5);  // no footprint: the box around it
+}
+
+// A bus that is turned by a right angle is long along north, whatever its sphere.
+TEST(AutowareObjects, AreSolidsAsTheyAreTurned) {
+  Object o = object();
+  o.shape().dimensions().x(12.0);
+  o.shape().dimensions().y(2.0);
+  o.shape().dimensions().z(3.0);
+  auto& orientation = o.kinematics().pose_with_covariance().pose().orientation();
+  orientation.x(0.0);
+  orientation.y(0.0);
+  orientation.z(std::sqrt(0.5));
+  orientation.w(std::sqrt(0.5));
+  o.kinematics().twist_with_covariance().twist().angular().z(0.3);
+  const Track bus = track_of(o);
+  ASSERT_NE(bus.body.solid, nullptr);
+  EXPECT_TRUE(planner::geometry::is_valid(bus));
+  EXPECT_NEAR(bus.body.solid->extent(Vec3::UnitY()), 6.0, 1e-9);
+  EXPECT_NEAR(bus.body.solid->extent(Vec3::UnitX()), 1.0, 1e-9);
+  EXPECT_DOUBLE_EQ(bus.body.yaw_rate, 0.3);
+  o.shape().type(kCylinder);
+  o.shape().dimensions().y(12.0);
+  EXPECT_NEAR(track_of(o).body.solid->extent(Vec3(0.6, 0.8, 0.0)), 6.0, 1e-9);
+  EXPECT_NEAR(track_of(o).body.solid->extent(Vec3::UnitZ()), 1.5, 1e-9);
+  o.shape().type(kPolygon);
+  o.shape().footprint().points().resize(3);
+  o.shape().footprint().points()[1].x(2.0F);
+  o.shape().footprint().points()[2].y(1.0F);
+  const Track wedge = track_of(o);
+  EXPECT_TRUE(planner::geometry::is_valid(wedge));
+  EXPECT_NEAR(wedge.body.solid->extent(Vec3::UnitY()), 2.0, 1e-9);
+  EXPECT_NEAR(wedge.body.solid->extent(-Vec3::UnitX()), 1.0, 1e-9);
+  EXPECT_NEAR(wedge.body.solid->extent(-Vec3::UnitY()), 0.0, 1e-9);
+  o.shape().footprint().points().resize(65);
+  EXPECT_EQ(track_of(o).body.solid, nullptr);  // its sphere
+  o = object();
+  o.kinematics().twist_with_covariance().twist().angular().z(11.0);
+  EXPECT_EQ(track_of(o).body.solid, nullptr);
 }
 
 TEST(AutowareObjects, HaveTheLargestDeviationOfTheirCovariances) {
