@@ -153,13 +153,14 @@ struct Scenario {
 ///
 /// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
 /// velocity and acceleration of a linear one. An obstacle has exactly one of radius, box, cylinder (radius, height),
-/// capsule (radius, a, b) and vertices. Optional: orientation and yaw_rate of an obstacle that is no sphere, time_limit, world (with both min and max), sensing and each of
-/// its keys, vehicles (further ones, at most 9, each with start and target, and vehicle where it is another one), wind
-/// and each of its keys, estimate (px4, the default, none, or a map of any of its keys), faults (a list, at most 1000;
-/// kinds and keys as in config/faults.hpp). Checked: starts and targets lie in the world, and no two starts are above
-/// each other so that the vehicles would touch on the ground; a bounce starts between min and max, which may coincide
-/// only on an axis without velocity; waypoint times start at 0 or later and increase. Bounds: coordinates 1e5, speeds
-/// and accelerations 1e3 per axis, radius, height and edges 1e3, yaw_rate 100 rad/s, 10000 obstacles, 10000 points each.
+/// capsule (radius, a, b) and vertices. Optional: orientation and yaw_rate of an obstacle that is no sphere,
+/// time_limit, world (with both min and max), sensing and each of its keys, vehicles (further ones, at most 9, each
+/// with start and target, and vehicle where it is another one), wind and each of its keys, estimate (px4, the default,
+/// none, or a map of any of its keys), faults (a list, at most 1000; kinds and keys as in config/faults.hpp). Checked:
+/// starts and targets lie in the world, and no two starts are above each other so that the vehicles would touch on the
+/// ground; a bounce starts between min and max, which may coincide only on an axis without velocity; waypoint times
+/// start at 0 or later and increase. Bounds: coordinates 1e5, speeds and accelerations 1e3 per axis, radius, height and
+/// edges 1e3, yaw_rate 100 rad/s, 10000 obstacles, 10000 points each.
 ///
 /// Throws ConfigError (config/error.hpp) for anything else: unreadable file, syntax, unknown, missing or repeated key,
 /// wrong type, value out of range, wrong format, unknown vehicle.

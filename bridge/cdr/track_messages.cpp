@@ -90,7 +90,8 @@ struct ObjectShape {
 };
 
 // A footprint and a height as the vertices of their hull; none of more than a sensor's cluster has.
-std::shared_ptr<const Solid> prism_over(const std::vector<Vec3>& footprint, double height, const Eigen::Matrix3d& axes) {
+std::shared_ptr<const Solid> prism_over(const std::vector<Vec3>& footprint, double height,
+                                        const Eigen::Matrix3d& axes) {
   constexpr std::size_t kMostPoints = 64;
   if (footprint.size() > kMostPoints) return nullptr;
   std::vector<Vec3> vertices;

@@ -21,10 +21,10 @@ namespace jink::bridge::cdr {
 /// says that there is none, else the object is left out); the radius is that of the sphere around its shape: half the
 /// diagonal of a bounding box, radius and half height of a cylinder, the farthest point of a footprint and half the
 /// height of a polygon; the body in it is the box, the cylinder, or the hull over the footprint (of at most 64 points),
-/// turned as the object is, turning as its twist says about the vertical; position_sigma and velocity_sigma are the largest standard deviation in any direction, leaving
-/// out those of 100 and more, which stand for "no information"; 0 where none is left or the covariance is marked as
-/// unknown (-1). Classification and existence probability do not matter: all that is tracked is avoided.
-/// [autoware_msgs, autoware_perception_msgs/msg]
+/// turned as the object is, turning as its twist says about the vertical; position_sigma and velocity_sigma are the
+/// largest standard deviation in any direction, leaving out those of 100 and more, which stand for "no information"; 0
+/// where none is left or the covariance is marked as unknown (-1). Classification and existence probability do not
+/// matter: all that is tracked is avoided. [autoware_msgs, autoware_perception_msgs/msg]
 [[nodiscard]] std::optional<tracking::DecodedTracks> decode_tracked_objects(std::span<const std::uint8_t> payload);
 
 }  // namespace jink::bridge::cdr

@@ -27,9 +27,9 @@ void check_pose(const Solid::Pose& pose) {
 
 /// The axes, the diagonals of a cube's faces and of the cube itself, and four more on the level: much stands upright.
 std::array<Vec3, Solid::kSlabs> directions() {
-  std::array<Vec3, Solid::kSlabs> all{
-      Vec3{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},   {1, -1, 0},  {1, 0, 1},   {1, 0, -1},  {0, 1, 1}, {0, 1, -1},
-      {1, 1, 1},      {1, 1, -1}, {1, -1, 1}, {-1, 1, 1},  {2, 1, 0},   {2, -1, 0},  {1, 2, 0},   {1, -2, 0}};
+  std::array<Vec3, Solid::kSlabs> all{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0}, {1, -1, 0}, {1, 0, 1},
+                                      {1, 0, -1},    {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1},
+                                      {-1, 1, 1},    {2, 1, 0}, {2, -1, 0}, {1, 2, 0}, {1, -2, 0}};
   for (Vec3& direction : all) direction.normalize();
   return all;
 }
@@ -80,8 +80,7 @@ std::shared_ptr<const Solid> Solid::hull(std::vector<Vec3> vertices) {
   }
   solid.vertices_ = std::move(vertices);
   const std::array<Vec3, kSlabs> all = directions();
-  for (std::size_t i = 0; i < kSlabs; ++i)
-    solid.slabs_[i] = {all[i], -solid.extent(-all[i]), solid.extent(all[i])};
+  for (std::size_t i = 0; i < kSlabs; ++i) solid.slabs_[i] = {all[i], -solid.extent(-all[i]), solid.extent(all[i])};
   return std::make_shared<const Solid>(std::move(solid));
 }
 

@@ -13,8 +13,8 @@
 
 namespace jink::planner::base {
 
-/// A convex solid, relative to a reference point, ENU, m, as it is at yaw 0. Immutable, so that tracks, which are copied
-/// many times a second, share it: a hull has any number of vertices.
+/// A convex solid, relative to a reference point, ENU, m, as it is at yaw 0. Immutable, so that tracks, which are
+/// copied many times a second, share it: a hull has any number of vertices.
 ///
 /// It is a prism or a hull. A prism is all that is within `rounding` of a core: in axes of its own, about `center`, a
 /// rectangle of half edges half.x and half.y, all within `corner` of it on its plane, up to half.z above and below. A
@@ -24,7 +24,7 @@ class Solid {
  public:
   /// Where a prism is: its centre from the reference point, and its own axes in ENU, the columns, orthonormal.
   struct Pose {
-    Vec3 center = Vec3::Zero();                            ///< m
+    Vec3 center = Vec3::Zero();                          ///< m
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< orthonormal, right-handed
   };
   /// The extent of a hull along a direction: its points p have low <= normal · p <= high.

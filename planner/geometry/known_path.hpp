@@ -9,10 +9,11 @@
 
 namespace jink::planner::geometry {
 
-/// A sphere, or a body in it, on a timed path: it stands at the first point before that point's time, moves at constant velocity between
-/// points (velocity and acceleration of the points are not read), and stays at the last point after that. What it does
-/// after the last point is not known, so from there on its uncertainty grows as that of a track whose acceleration is
-/// not known. That it keeps to the path at all is what `velocity_sigma` doubts, as it doubts a track's velocity.
+/// A sphere, or a body in it, on a timed path: it stands at the first point before that point's time, moves at constant
+/// velocity between points (velocity and acceleration of the points are not read), and stays at the last point after
+/// that. What it does after the last point is not known, so from there on its uncertainty grows as that of a track
+/// whose acceleration is not known. That it keeps to the path at all is what `velocity_sigma` doubts, as it doubts a
+/// track's velocity.
 struct KnownPath {
   std::uint64_t id = 0;            ///< whose path it is; named in Verification::nearest_id
   base::TimedPath points;          ///< never empty; times in a clock of their own

@@ -30,16 +30,18 @@ void for_each_obstacle(const PathRequest& request, double clearance, const Visit
   const double trust = request.acceleration_trust;
   const double wanted = request.vehicle.radius + clearance;
   for (const base::Track& track : request.tracks) {
-    visit(EachObstacle{track.radius + wanted, wanted, base::kInfinity, track.body,
-                       [&](double t) { return geometry::predict_position(track, t, trust); },
-                       [&](double t) { return geometry::predict_velocity(track, t, trust); }});
+    const auto position = [&](double t) { return geometry::predict_position(track, t, trust); };
+    const auto velocity = [&](double t) { return geometry::predict_velocity(track, t, trust); };
+    visit(EachObstacle<decltype(position), decltype(velocity)>{track.radius + wanted, wanted, base::kInfinity,
+                                                               track.body, position, velocity});
   }
   for (const geometry::KnownPath& path : request.paths) {
-    visit(EachObstacle{path.radius + path.margin + wanted, path.margin + wanted, path.until, path.body,
-                       [&](double t) { return path.position(t); },
-                       [&](double t) -> Vec3 {
-                         return (path.position(t + kDifference) - path.position(t - kDifference)) / (2.0 * kDifference);
-                       }});
+    const auto position = [&](double t) { return path.position(t); };
+    const auto velocity = [&](double t) -> Vec3 {
+      return (path.position(t + kDifference) - path.position(t - kDifference)) / (2.0 * kDifference);
+    };
+    visit(EachObstacle<decltype(position), decltype(velocity)>{path.radius + path.margin + wanted, path.margin + wanted,
+                                                               path.until, path.body, position, velocity});
   }
 }
 

@@ -74,8 +74,8 @@ std::vector<Encounter> encounters(const PathRequest& request, const base::TimedP
                                   const base::HorizonSettings& settings) {
   std::vector<Encounter> list;
   for_each_obstacle(request, first_clearance(request, settings), [&](const auto& obstacle) {
-    const std::optional<Encounter> met =
-        obstacle.body.solid == nullptr ? met_sphere(obstacle, unobstructed, until) : met_solid(obstacle, unobstructed, until);
+    const std::optional<Encounter> met = obstacle.body.solid == nullptr ? met_sphere(obstacle, unobstructed, until)
+                                                                        : met_solid(obstacle, unobstructed, until);
     if (met) list.push_back(*met);
   });
   const std::size_t first = std::min(static_cast<std::size_t>(settings.encounters), list.size());

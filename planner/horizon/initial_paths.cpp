@@ -31,7 +31,7 @@ std::array<Vec3, 4> ways_past(const Encounter& e, const Vec3& heading) {
   const Vec3 along = speed > 1e-6 ? Vec3(e.closing / speed) : heading;
   const Vec3 across = e.apart - e.apart.dot(along) * along;
   Vec3 side = e.solid.is_none() ? across : Vec3(Vec3::Zero());  // most solids stand upright
-  if (side.norm() < 1e-6) side = along.cross(Vec3::UnitZ());  // dead centre: any side will do
+  if (side.norm() < 1e-6) side = along.cross(Vec3::UnitZ());    // dead centre: any side will do
   if (side.norm() < 1e-6) side = Vec3::UnitX();
   side.normalize();
   const Vec3 other = along.cross(side);
@@ -41,8 +41,8 @@ std::array<Vec3, 4> ways_past(const Encounter& e, const Vec3& heading) {
 
 /// Unobstructed flight with `displacement` from time `first` to `last`: all of it while it counts, none before and
 /// after; but what it falls behind (or hurries ahead) along `heading` stays.
-base::TimedPath displaced(const base::TimedPath& unobstructed, std::span<const double> times, double first,
-                          double last, const Vec3& displacement, const Vec3& heading, double leg) {
+base::TimedPath displaced(const base::TimedPath& unobstructed, std::span<const double> times, double first, double last,
+                          const Vec3& displacement, const Vec3& heading, double leg) {
   base::TimedPath path;
   const Vec3 lag = displacement.dot(heading) * heading;
   for (const double time : times) {

@@ -78,8 +78,8 @@ class NearbyObstacles {
   std::vector<Group> groups_;
   std::vector<NearbyObstacle> found_, met_;  // by track, and by step
   std::vector<NearbySolid> solids_;
-  std::vector<std::size_t> step_;            // of each found
-  std::vector<std::size_t> begin_;           // of each step in met_, and the end
+  std::vector<std::size_t> step_;   // of each found
+  std::vector<std::size_t> begin_;  // of each step in met_, and the end
   std::vector<std::size_t> next_;
   std::size_t obstacles_ = 0;
 };

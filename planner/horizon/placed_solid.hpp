@@ -109,7 +109,7 @@ class PlacedSolid {
 
   const base::Solid* solid_ = nullptr;
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< its own, in ENU, the columns
-  Vec3 shift_ = Vec3::Zero();                         ///< of its middle, in its own axes
+  Vec3 shift_ = Vec3::Zero();                           ///< of its middle, in its own axes
 };
 
 }  // namespace jink::planner::horizon

@@ -10,12 +10,12 @@
 namespace jink::planner::verify {
 
 /// From a point to the surface of the body, the point relative to the body's reference point, ENU, m; negative in a
-/// prism, minus the way out, and 0 in a hull. Never more than it is by more than rounding. O(vertices) for each of a few
-/// steps, no heap. Precondition: a solid.
+/// prism, minus the way out, and 0 in a hull. Never more than it is by more than rounding. O(vertices) for each of a
+/// few steps, no heap. Precondition: a solid.
 [[nodiscard]] double solid_distance(const base::Body& body, const Vec3& point);
 
-/// Folds one piece of relative motion, which starts at path time `t0`, when the body is as given, into the result, for a
-/// vehicle of that radius. Where it turns or swings so fast that the nearest place is not found in 100 000 steps, the
+/// Folds one piece of relative motion, which starts at path time `t0`, when the body is as given, into the result, for
+/// a vehicle of that radius. Where it turns or swings so fast that the nearest place is not found in 100 000 steps, the
 /// result is not valid.
 ///
 /// Seen from the body, the vehicle's centre goes along a curve q(t) whose second derivative is at most some a. The

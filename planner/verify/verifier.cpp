@@ -312,7 +312,8 @@ class PathCheck {
   template <typename Motion>
   void add_place(const Motion& motion, const base::TimedPoint& place, Verification& result) const {
     if (place.t >= motion.until()) return;
-    motion.outline().fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t, result);
+    motion.outline().fold({place.position - motion.position(place.t), Vec3::Zero(), Vec3::Zero(), 0.0}, place.t,
+                          result);
   }
 
   static constexpr std::size_t kStretches = 12;

@@ -51,9 +51,10 @@ inline constexpr double kUsualAccuracy = 1e-9;  ///< m, see kAccuracy
 
 /// Minimum over all instants, not samples: between two points and the instants at which a prediction changes or a known
 /// path turns, the squared distance to a sphere's centre is a polynomial of degree four whose stationary points are all
-/// found, and the distance to a solid is bounded from below until no interval can hold a smaller one (solid_contact.hpp).
-/// In a hull of vertices the distance counts as 0, however deep. What is certain to be farther away than a clearance already seen, and free, is skipped. O(points + tracks), and points for
-/// each track that comes near; at worst O(points · tracks).
+/// found, and the distance to a solid is bounded from below until no interval can hold a smaller one
+/// (solid_contact.hpp). In a hull of vertices the distance counts as 0, however deep. What is certain to be farther
+/// away than a clearance already seen, and free, is skipped. O(points + tracks), and points for each track that comes
+/// near; at worst O(points · tracks).
 ///
 /// Not valid, and so not free, is what planner/geometry/validity.hpp refuses (no path, times that do not increase,
 /// numbers that are none, negative radii, what is larger than its bounds), and tracks that get farther than kFarthest

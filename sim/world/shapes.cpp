@@ -137,8 +137,7 @@ SegmentDistance lines_distance(const Vec3& a, const Vec3& b, const Vec3& c, cons
   consider(share_of(d, a, u));
   const double parallel = u.dot(v);
   const double across = u.squaredNorm() * v.squaredNorm() - parallel * parallel;
-  if (across > 0.0)
-    consider(std::clamp((parallel * v.dot(a - c) - v.squaredNorm() * u.dot(a - c)) / across, 0.0, 1.0));
+  if (across > 0.0) consider(std::clamp((parallel * v.dot(a - c) - v.squaredNorm() * u.dot(a - c)) / across, 0.0, 1.0));
   return best;
 }
 

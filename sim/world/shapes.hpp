@@ -21,17 +21,18 @@ using planner::geometry::Sphere;
 /// that point.
 [[nodiscard]] Sphere bounding_sphere(const config::Obstacle& obstacle);
 
-/// What a track tells of the obstacle's shape about `center`, relative to its reference point, ENU, at yaw 0 being as it
-/// is at t = 0. None for a sphere.
-[[nodiscard]] std::shared_ptr<const planner::base::Solid> solid_of(const config::Obstacle& obstacle, const Vec3& center);
+/// What a track tells of the obstacle's shape about `center`, relative to its reference point, ENU, at yaw 0 being as
+/// it is at t = 0. None for a sphere.
+[[nodiscard]] std::shared_ptr<const planner::base::Solid> solid_of(const config::Obstacle& obstacle,
+                                                                   const Vec3& center);
 
 /// The obstacle's own axes at time `t`, in ENU: the columns. Before t = 0 it does not turn.
 [[nodiscard]] Eigen::Matrix3d axes_at(const config::Obstacle& obstacle, double t);
 
 /// Distance in metres from `point` to the surface of the shape whose reference point is at `reference`, along its own
-/// axes; negative inside (then the way out). Inside the convex hull of vertices it is 0: the depth is not computed. Exact
-/// to about 1e-12 of the size, and 1e-10 for hulls. O(n) per step for n vertices, with a few
-/// steps; no heap, thread safe.
+/// axes; negative inside (then the way out). Inside the convex hull of vertices it is 0: the depth is not computed.
+/// Exact to about 1e-12 of the size, and 1e-10 for hulls. O(n) per step for n vertices, with a few steps; no heap,
+/// thread safe.
 [[nodiscard]] double distance(const config::Shape& shape, const Vec3& reference, const Vec3& point);
 
 /// The nearest point of a straight way.
@@ -40,8 +41,8 @@ struct SegmentDistance {
   double fraction = 0.0;  ///< where: 0 at its beginning, 1 at its end; any one place if there are several
 };
 
-/// The minimum of distance() over the points from `begin` to `end`, exact like it, for a cylinder to 1e-9 m. The two may
-/// be equal.
+/// The minimum of distance() over the points from `begin` to `end`, exact like it, for a cylinder to 1e-9 m. The two
+/// may be equal.
 [[nodiscard]] SegmentDistance segment_distance(const config::Shape& shape, const Vec3& reference, const Vec3& begin,
                                                const Vec3& end);
 

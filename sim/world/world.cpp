@@ -66,7 +66,8 @@ class Search {
     // minus the deviation from the chord.
     const double t0 = way_.time(from.u);
     const double t1 = way_.time(to.u);
-    const double deviation = chord_deviation(obstacle_.motion, t0, t1) + turn_deviation(from.relative, to.relative, t0, t1);
+    const double deviation =
+        chord_deviation(obstacle_.motion, t0, t1) + turn_deviation(from.relative, to.relative, t0, t1);
     const double bound = std::max(chord.distance - deviation, floor_);
     if (!(bound < best_ - World::kSweepTolerance)) return;
     const double half = 0.5 * (from.u + to.u);

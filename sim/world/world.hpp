@@ -61,8 +61,8 @@ class World {
   /// From a point to the true surface of obstacle `i` at `t`, m; negative inside.
   [[nodiscard]] double distance(int i, const Vec3& p, double t) const;
 
-  /// What perfect sensing would report of obstacle `i`: its enclosing sphere, and in it its shape, with the true velocity
-  /// and acceleration, no uncertainty, age 0.
+  /// What perfect sensing would report of obstacle `i`: its enclosing sphere, and in it its shape, with the true
+  /// velocity and acceleration, no uncertainty, age 0.
   [[nodiscard]] planner::base::Track exact_track(int i, double t) const;
 
   /// Smallest distance at `t` from the vehicle's sphere, centred at `p`, to the true surface of any obstacle; negative

@@ -100,10 +100,10 @@ TEST(LoadScenario, ReadsEveryShapeAndMotion) {
   EXPECT_EQ(vertices[3], Vec3(0, 0, 1));
   EXPECT_EQ(s.obstacles[1].orientation, Vec3::Zero());
   EXPECT_EQ(s.obstacles[1].yaw_rate, 0.0);
-  const Scenario turned = loaded(replaced(
-      replaced(kValidScenario, "box: [0.8, 0.9, 1.0]",
-               "cylinder: {radius: 0.3, height: 8}, orientation: [0.1, 0.2, 0.3], yaw_rate: -0.4"),
-      "vertices: [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "capsule: {radius: 0.02, a: [0, -4, 0], b: [0, 4, 1]}"));
+  const Scenario turned = loaded(
+      replaced(replaced(kValidScenario, "box: [0.8, 0.9, 1.0]",
+                        "cylinder: {radius: 0.3, height: 8}, orientation: [0.1, 0.2, 0.3], yaw_rate: -0.4"),
+               "vertices: [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "capsule: {radius: 0.02, a: [0, -4, 0], b: [0, 4, 1]}"));
   EXPECT_EQ(turned.obstacles[1].shape, Shape(CylinderShape{0.3, 8}));
   EXPECT_EQ(turned.obstacles[1].orientation, Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(turned.obstacles[1].yaw_rate, -0.4);
@@ -181,7 +181,8 @@ TEST(LoadScenario, RefusesBadSensing) {
 TEST(LoadScenario, RefusesBadShapes) {
   const std::vector<BadCase> cases = {
       {"radius: 0.5", "radius: -0.5", 10, "obstacles[0].radius", "-0.5", "is not in (0, 1000]"},
-      {"radius: 0.5, ", "", 10, "obstacles[0]", "", "has no shape; expected exactly one of radius, box, cylinder, capsule, vertices"},
+      {"radius: 0.5, ", "", 10, "obstacles[0]", "",
+       "has no shape; expected exactly one of radius, box, cylinder, capsule, vertices"},
       {"radius: 0.5, ", "radius: 0.5, box: [1, 1, 1], ", 10, "obstacles[0]", "", "has the shapes radius, box"},
       {"box: [0.8, 0.9, 1.0]", "box: [0.8, 0, 1.0]", 11, "obstacles[1].box[1]", "0", "is not in (0, 1000]"},
       {"box: [0.8, 0.9, 1.0]", "box: 0.8", 11, "obstacles[1].box", "0.8", "is a number; expected a list"},

@@ -59,9 +59,11 @@ std::vector<SolidWorld> solid_worlds() {
   // A house across the street, whose ball would be from wall to wall of the world.
   worlds.push_back({street("house", {{config::BoxShape{{6, 10, 12}}, config::LinearMotion{{10, 1, 4}}}})});
   // Turned, so that its walls are along nothing.
-  worlds.push_back({street("turned_house", {{config::BoxShape{{9, 6, 12}}, config::LinearMotion{{10, -1, 4}}, {0.6, 0, 0}}})});
+  worlds.push_back(
+      {street("turned_house", {{config::BoxShape{{9, 6, 12}}, config::LinearMotion{{10, -1, 4}}, {0.6, 0, 0}}})});
   // A truck of 8 m crosses at 5 m/s.
-  worlds.push_back({street("truck", {{config::BoxShape{{2.5, 8, 3.5}}, config::LinearMotion{{10, -15, 1.75}, {0, 5, 0}}}})});
+  worlds.push_back(
+      {street("truck", {{config::BoxShape{{2.5, 8, 3.5}}, config::LinearMotion{{10, -15, 1.75}, {0, 5, 0}}}})});
   worlds.push_back({street("forest", trunks())});
   // A wall with a gate of 2 m, whose halves' balls overlap.
   worlds.push_back({street("gate", {{config::BoxShape{{0.3, 11, 10}}, config::LinearMotion{{10, -6.5, 4}}},
@@ -78,8 +80,9 @@ std::vector<SolidWorld> solid_worlds() {
   turning.scenario.world = planner::base::Box{{-2, -5, 0.3}, {22, 5, 4}};
   worlds.push_back(turning);
   // A tent.
-  worlds.push_back({street("tent", {{config::VertexShape{{{-3, -6, 0}, {3, -6, 0}, {3, 6, 0}, {-3, 6, 0}, {0, -6, 5}, {0, 6, 5}}},
-                                     config::LinearMotion{{10, 0, 0}}}})});
+  worlds.push_back(
+      {street("tent", {{config::VertexShape{{{-3, -6, 0}, {3, -6, 0}, {3, 6, 0}, {-3, 6, 0}, {0, -6, 5}, {0, 6, 5}}},
+                        config::LinearMotion{{10, 0, 0}}}})});
   return worlds;
 }
 

@@ -34,10 +34,11 @@ struct FlightLogOptions {
 ///
 /// header {type, format, scenario|mission, seed, version, parameters, ...; of a scenario `shapes`: [{id, box:
 /// edges}|{id, cylinder: {radius, height}}|{id, capsule: {radius, a, b}}|{id, vertices}, ...], each with `orientation`
-/// and `yaw_rate` where it has them, of the obstacles that are no spheres, about the `p` of their `obstacles` records, and,
-/// where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with `type` and
-/// `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has
-/// several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks {tracks:
+/// and `yaw_rate` where it has them, of the obstacles that are no spheres, about the `p` of their `obstacles` records,
+/// and, where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with
+/// `type` and `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where
+/// it has several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks
+/// {tracks:
 /// [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]}, plan {path: [[t, x, y, z], ...], ms, status, ...,
 /// from}, setpoint {p, v, a, yaw}, event {name, detail}. Vectors are [x, y, z], ENU, m. `t` of truth and obstacles is
 /// scenario time, of the others the companion's clock; in `replay` the two are one.
@@ -46,13 +47,14 @@ struct FlightLogOptions {
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], margin, track_acceleration,
 /// acceleration_trust, stuck, visit, tracks: [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma,
-/// velocity_sigma, age], ...], at the end of each that has a solid {yaw, yaw_rate, prism: [half edges, corner, rounding,
-/// centre, three axes] or hull: [vertices]} (planner::base::Solid, numbers in a row), forecasts: [{track, radius, position_sigma, velocity_sigma, plain_until, bounces:
-/// [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id,
-/// offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's
-/// other vehicles (planner::KnownPath), previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
-/// from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and
-/// parameters the plan can be made again (tools/log/flight_replay.hpp).
+/// velocity_sigma, age], ...], at the end of each that has a solid {yaw, yaw_rate, prism: [half edges, corner,
+/// rounding, centre, three axes] or hull: [vertices]} (planner::base::Solid, numbers in a row), forecasts: [{track,
+/// radius, position_sigma, velocity_sigma, plain_until, bounces: [begin, velocity, min, max] or swings: [frequency,
+/// terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin, position_sigma,
+/// velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other vehicles (planner::KnownPath),
+/// previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times from there on. A number in it that
+/// is not finite is the text "inf", "-inf" or "nan". With the header's seed and parameters the plan can be made again
+/// (tools/log/flight_replay.hpp).
 ///
 /// The observers may be called from one thread at a time.
 class FlightLog final : public bridge::companion::FlightObserver, public sim::world::TruthObserver {

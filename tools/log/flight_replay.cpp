@@ -103,8 +103,8 @@ std::shared_ptr<const planner::base::Solid> solid_of(const Json& record) {
 
 planner::base::Body body_of(const Json& record, double radius) {
   if (!record.is_object()) refuse("\"tracks\" holds a body that is no object");
-  const planner::base::Body body{solid_of(record), exact(member(record, "yaw"), "yaw"),
-                                 exact(member(record, "yaw_rate"), "yaw_rate")};
+  planner::base::Body body{solid_of(record), exact(member(record, "yaw"), "yaw"),
+                           exact(member(record, "yaw_rate"), "yaw_rate")};
   if (!planner::geometry::is_valid(body, radius)) refuse("\"tracks\" holds a body that is not in its sphere");
   return body;
 }

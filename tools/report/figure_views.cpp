@@ -123,8 +123,7 @@ std::vector<Triple> corners_of(const FlightData& flight, const Body& body, doubl
   std::vector<Triple> corners;
   const auto shape = flight.shapes.find(body.id);
   if (shape == flight.shapes.end()) return corners;
-  for (const Vec3& corner : shape_corners(shape->second, t))
-    corners.push_back(triple(vector(body.position) + corner));
+  for (const Vec3& corner : shape_corners(shape->second, t)) corners.push_back(triple(vector(body.position) + corner));
   return corners;
 }
 

@@ -65,8 +65,8 @@ config::Shape shape_of(const Json& record) {
   if (const auto capsule = record.find("capsule"); capsule != record.end()) {
     const Triple a = bounded(log::member(*capsule, "a"), "a", -kFarthest, kFarthest);
     const Triple b = bounded(log::member(*capsule, "b"), "b", -kFarthest, kFarthest);
-    return config::CapsuleShape{bounded_number(*capsule, "radius", 0.0, kLargest), {a[0], a[1], a[2]},
-                                {b[0], b[1], b[2]}};
+    return config::CapsuleShape{
+        bounded_number(*capsule, "radius", 0.0, kLargest), {a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   }
   config::VertexShape hull;
   const Json& list = log::list_of(record, "vertices");

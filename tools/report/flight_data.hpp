@@ -77,8 +77,9 @@ struct EventRecord {
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a json value does not throw, it only asserts
 struct FlightData {
   nlohmann::json header;
-  std::map<std::uint64_t, config::Obstacle> shapes;  ///< of those that are no spheres, about Body::position; motion unset
-  std::vector<OtherVehicle> others;                  ///< in the order of their numbers
+  std::map<std::uint64_t, config::Obstacle>
+      shapes;                        ///< of those that are no spheres, about Body::position; motion unset
+  std::vector<OtherVehicle> others;  ///< in the order of their numbers
   std::vector<MotionSample> truth, states, setpoints;
   std::vector<BodyFrame> obstacles, tracks;
   std::vector<PlanRecord> plans;

@@ -10,9 +10,9 @@
 #include <variant>
 
 #include "sim/world/shapes.hpp"
-#include "tools/report/shape_corners.hpp"
 #include "tools/report/convex_hull.hpp"
 #include "tools/report/event_severity.hpp"
+#include "tools/report/shape_corners.hpp"
 
 namespace jink::tools::report {
 namespace {

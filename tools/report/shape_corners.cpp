@@ -10,8 +10,8 @@
 namespace jink::tools::report {
 namespace {
 
-constexpr int kRound = 32;    // corners of a circle
-constexpr int kUpwards = 8;   // circles from a ball's middle to its pole
+constexpr int kRound = 32;   // corners of a circle
+constexpr int kUpwards = 8;  // circles from a ball's middle to its pole
 
 struct Corners {
   std::vector<Vec3> operator()(const config::SphereShape& /*sphere*/) const { return {}; }

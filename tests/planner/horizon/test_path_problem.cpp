@@ -421,7 +421,8 @@ std::vector<base::Track> random_solids(base::RandomStream& random) {
     track.body.solid = random.below(5) == 0
                            ? base::Solid::hull({random_vector(random, 1.0), random_vector(random, 1.0),
                                                 random_vector(random, 1.0), random_vector(random, 1.0)})
-                           : base::Solid::prism(half, corner, rounding, {0.3 * random_vector(random, 1.0), Eigen::Matrix3d::Identity()});
+                           : base::Solid::prism(half, corner, rounding,
+                                                {0.3 * random_vector(random, 1.0), Eigen::Matrix3d::Identity()});
     track.body.yaw = random.uniform(-3.0, 3.0);
     track.body.yaw_rate = random.below(2) == 0 ? 0.0 : random.uniform(-2.0, 2.0);
     track.radius = track.body.solid->reach() + random.uniform(0.0, 0.2);

@@ -71,7 +71,8 @@ inline config::Shape random_shape(RandomStream& random, std::uint64_t kind) {
 }
 
 /// Half of them turned somehow, half of these turning.
-inline config::Obstacle random_obstacle(RandomStream& random, const config::Shape& shape, const config::Motion& motion) {
+inline config::Obstacle random_obstacle(RandomStream& random, const config::Shape& shape,
+                                        const config::Motion& motion) {
   config::Obstacle obstacle{shape, motion};
   const std::uint64_t turned = random.below(4);
   if (turned > 1) obstacle.orientation = random_vector(random, -3, 3);

@@ -250,8 +250,8 @@ TEST(Sweep, IsTheMinimumOfTheClearance) {
     std::vector<config::Obstacle> obstacles;
     for (std::uint64_t i = 0; i < 1 + seed % 4; ++i) {
       const config::Shape shape = testing::random_shape(random, random.below(testing::kShapeKinds));
-      obstacles.push_back(testing::random_obstacle(
-          random, shape, testing::random_motion(random, (seed + i) % testing::kMotionKinds)));
+      obstacles.push_back(
+          testing::random_obstacle(random, shape, testing::random_motion(random, (seed + i) % testing::kMotionKinds)));
     }
     const World world(scenario_with(std::move(obstacles)));
     const Vec3 p0 = testing::random_vector(random, -3, 3);

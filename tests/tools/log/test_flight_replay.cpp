@@ -13,8 +13,8 @@
 
 #include "config/error.hpp"
 #include "config/scenario.hpp"
-#include "sim/flight/closed_loop.hpp"
 #include "planner/base/solid.hpp"
+#include "sim/flight/closed_loop.hpp"
 #include "tests/support/repetitions.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/cli/summaries.hpp"
@@ -203,7 +203,8 @@ TEST(FlightReplay, PlansAmongSolidsAreRepeated) {
   const auto file = folder.path() / "flight.jsonl";
   RealTimePlans plans(file);
   using planner::base::Solid;
-  std::vector<planner::base::Track> tracks{sphere(1, {6, 0.2, 2}, {0, 0, 0}, 2.0), sphere(2, {10, 1, 2}, {0, 0, 0}, 3.0)};
+  std::vector<planner::base::Track> tracks{sphere(1, {6, 0.2, 2}, {0, 0, 0}, 2.0),
+                                           sphere(2, {10, 1, 2}, {0, 0, 0}, 3.0)};
   tracks[0].body = {Solid::box({0.5, 3.1, 1.7}, {{0.0, 0.1, 0.0}, Eigen::Matrix3d::Identity()}), 1.0 / 3.0, -0.2};
   tracks[1].body = {Solid::hull({{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1.0 / 3.0, -1, 1}}), 0.0, 0.0};
   plans.make(job(0, tracks), std::chrono::seconds(10));
