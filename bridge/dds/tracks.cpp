@@ -111,6 +111,7 @@ class DdsTrackReader::Impl {
       track.position = to_local_ * track.position;
       track.velocity = to_local_.linear() * track.velocity;
       track.acceleration = to_local_.linear() * track.acceleration;
+      track.body.yaw += std::atan2(to_local_.linear()(1, 0), to_local_.linear()(0, 0));
     }
     message.placed = true;
     return true;

@@ -51,11 +51,11 @@ class Solid {
 
   /// Whether it is the hull of vertices(); else a prism.
   [[nodiscard]] bool is_hull() const { return !vertices_.empty(); }
-  [[nodiscard]] const Pose& pose() const { return pose_; }
-  [[nodiscard]] const Vec3& half() const { return half_; }     ///< of a prism, m, >= 0
-  [[nodiscard]] double corner() const { return corner_; }      ///< of a prism, m, >= 0
-  [[nodiscard]] double rounding() const { return rounding_; }  ///< of a prism, m, >= 0
-  [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }
+  [[nodiscard]] const Pose& pose() const { return pose_; }                    ///< of a prism
+  [[nodiscard]] const Vec3& half() const { return half_; }                    ///< of a prism, m, >= 0
+  [[nodiscard]] double corner() const { return corner_; }                     ///< of a prism, m, >= 0
+  [[nodiscard]] double rounding() const { return rounding_; }                 ///< of a prism, m, >= 0
+  [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }  ///< of a hull, m
   /// Of a hull: it lies in all of them. What lies in all of them may be larger than the hull.
   [[nodiscard]] std::span<const Slab> slabs() const { return {slabs_.data(), is_hull() ? slabs_.size() : 0}; }
 
