@@ -22,7 +22,8 @@ void check_pose(const Solid::Pose& pose) {
   constexpr double kSkew = 1e-6;
   check(pose.center.allFinite(), "solid: a centre that is not finite");
   const Eigen::Matrix3d product = pose.axes.transpose() * pose.axes;
-  check((product - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kSkew, "solid: axes that are not orthonormal");
+  const Eigen::Matrix3d skew = product - Eigen::Matrix3d::Identity();
+  check((skew.array().abs() <= kSkew).all(), "solid: axes that are not orthonormal");  // false for NaN
 }
 
 /// The axes, the diagonals of a cube's faces and of the cube itself, and four more on the level: much stands upright.
