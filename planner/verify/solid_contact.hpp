@@ -18,10 +18,13 @@ namespace jink::planner::verify {
 /// a vehicle of that radius. Where it turns or swings so fast that the nearest place is not found in 100 000 steps, the
 /// result is not valid.
 ///
-/// Seen from the body, the vehicle's centre goes along a curve q(t) whose second derivative is at most some a. The
-/// distance d to a convex body is convex and grows no faster than its point moves, so d(q(t)) + a t²/2 is convex in t:
-/// its tangents at both ends of an interval bound it from below, and intervals are split until no bound is below what
-/// was found by more than 1e-9 m, and rounding (branch and bound with an alpha underestimator, Adjiman et al., 1998).
+/// Seen from the body, the vehicle's centre goes along a curve q(t). The distance d to a convex body is convex: with
+/// its gradient g at an end of an interval, d(q(t)) is nowhere below d + g · (q(t) - q), and that is nowhere below a
+/// line less as much as g · q(t) bends, of which its second derivative is at most some a. The two ends' lines, each
+/// made steeper by a/2 times the interval's width, bound d from below, and intervals are split until no bound is below
+/// what was found by more than 1e-9 m, and rounding (branch and bound with an alpha underestimator, Adjiman et al.,
+/// 1998). Along the vertical turning bends nothing, and what is round about it need not be turned: else a hovering
+/// vehicle that is as far all the time would not be judged.
 void fold_solid(const RelativeMotion& m, const base::Body& body, double t0, double vehicle_radius, std::uint64_t id,
                 Verification& result);
 

@@ -2,6 +2,8 @@
 // Runs a fuzzer on files and folders of files instead of libFuzzer's inputs: a corpus as a regression test, and one
 // input while its finding is looked into. `--random COUNT [SEED]` runs it on so many random inputs, at the release
 // build's speed; the one that fails is left as fuzz-failed.
+#include <fcntl.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -17,13 +19,12 @@ constexpr const char* kFailed = "fuzz-failed";
 int run_random(unsigned long long count, unsigned long long seed) {
   constexpr std::size_t kLongest = 800;  // bytes
   std::vector<std::uint8_t> bytes;
+  jink::fuzz::OpenFile failed(::creat(kFailed, S_IRUSR | S_IWUSR));
   for (unsigned long long n = 0; n < count; ++n) {
     jink::planner::base::RandomStream random(seed, n);
     bytes.resize(random.below(kLongest) + 1);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.below(256));
-    std::ofstream(kFailed, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+    failed.write(bytes.data(), bytes.size());
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }
   std::filesystem::remove(kFailed);

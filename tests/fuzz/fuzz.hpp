@@ -46,22 +46,30 @@ class Input {
   std::span<const std::uint8_t> rest_;
 };
 
-/// A file in memory for those who read files. The same one for all inputs; each replaces the one before.
-class MemoryFile {
+/// A file that stays open. What is written replaces what was before.
+class OpenFile {
  public:
-  MemoryFile() : descriptor_(::memfd_create("fuzz", 0)) { require(descriptor_ >= 0, "memfd_create failed"); }
-  ~MemoryFile() { ::close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
+  explicit OpenFile(int descriptor) : descriptor_(descriptor) {
+    require(descriptor_ >= 0, "a file that cannot be opened");
+  }
+  ~OpenFile() { ::close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
 
   void write(const std::uint8_t* data, std::size_t size) {
     const auto length = static_cast<off_t>(size);
-    require(::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, data, size, 0) == length, "the file in memory");
+    require(::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, data, size, 0) == length, "a file's write");
   }
   [[nodiscard]] std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
  private:
   int descriptor_;
+};
+
+/// A file in memory for those who read files. The same one for all inputs.
+class MemoryFile : public OpenFile {
+ public:
+  MemoryFile() : OpenFile(::memfd_create("fuzz", 0)) {}
 };
 
 }  // namespace jink::fuzz

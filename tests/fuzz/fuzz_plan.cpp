@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random requests (vehicles of 0.1 to 20 m/s and 0.5 to 30 m/s², tracks, known paths, volumes, plans before, absurd
-// numbers), planned with a tiny search and judged by a judge of its own: it shares no code with planner/verify or the
-// search. It has its own motion of all that moves, in long double, and proves a distance by halving time until no body
-// is fast enough to come nearer. The input: numbers of two bytes each; where it ends, numbers that follow from it.
+// Random requests (vehicles of 0.1 to 20 m/s and 0.5 to 30 m/s², tracks, known paths, solids in a third of them,
+// volumes, plans before, absurd numbers), planned with a tiny search and judged by a judge of its own: it shares no
+// code with planner/verify or the search. It has its own motion of all that moves, in long double, and proves a
+// distance by halving time until nothing is fast enough to come nearer. The input: numbers of two bytes each; where it
+// ends, numbers that follow from it. Solids follow from it too: they change none of the other numbers.
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <vector>
 
-#include "planner/base/random.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/open_loop.hpp"
+#include "tests/fuzz/any_shape.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/judged_motion.hpp"
+#include "tests/fuzz/judged_solid.hpp"
+#include "tests/fuzz/numbers.hpp"
 
 // What is promoted to long double here is meant to be.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
@@ -21,8 +25,12 @@ namespace {
 
 using namespace jink;
 using namespace jink::planner;
+using fuzz::Numbers;
+using fuzz::Place;
+using fuzz::Real;
 using fuzz::require;
-using Real = long double;
+using fuzz::Shape;
+using fuzz::Walker;
 
 constexpr Real kClearance = 1e-7L;  // m, that the verifier may be off
 constexpr Real kStated = 1e-3L;     // m, to which the clearance that a plan states is looked at
@@ -31,43 +39,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // ---- What is asked ----
 
-/// Numbers from the input, and from its hash where it ends.
-class Numbers {
- public:
-  Numbers(const std::uint8_t* data, std::size_t size) : input_(data, size), rest_(hash(data, size)) {}
-
-  /// In [0, 1).
-  double unit() {
-    if (input_.empty()) return rest_.uniform();
-    const unsigned high = input_.byte();
-    return (256U * high + input_.byte()) / 65536.0;
-  }
-  double in(double low, double high) { return low + (high - low) * unit(); }
-  /// Evenly by its logarithm.
-  double scale(double low, double high) { return low * std::pow(high / low, unit()); }
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(unit() * static_cast<double>(n)); }
-  bool one_in(std::size_t n) { return below(n) == 0; }
-  Vec3 vec(double range) {
-    const double x = in(-range, range);
-    const double y = in(-range, range);
-    return {x, y, in(-range, range)};
-  }
-
- private:
-  static std::uint64_t hash(const std::uint8_t* data, std::size_t size) {
-    std::uint64_t h = 14695981039346656037U;  // FNV-1a
-    for (std::size_t i = 0; i < size; ++i) h = (h ^ data[i]) * 1099511628211U;
-    return h;
-  }
-
-  fuzz::Input input_;
-  base::RandomStream rest_;
-};
-
 struct Case {
   base::HorizonSettings settings;
   std::vector<base::Track> tracks;
   std::vector<geometry::KnownPath> paths;
+  std::vector<Shape> track_shapes, path_shapes;  // of those that are no spheres
   horizon::PathRequest request;
   base::TimedPath previous;
   bool open_loop = false;
@@ -143,10 +119,33 @@ geometry::KnownPath any_path(Numbers& n, const horizon::PathRequest& r, std::uin
   return path;
 }
 
+/// Of a third of all that moves only a solid in its sphere is there.
+void give_body(Numbers& n, base::Body& body, double radius, Shape& shape) {
+  if (!n.one_in(3)) return;
+  shape = fuzz::any_shape(n);
+  const double reach = std::max(shape.solid()->reach(), 1e-6);
+  shape.grow((n.one_in(2) ? 1.0 : n.in(0.5, 1.0)) * radius / reach);
+  body = {shape.solid(), n.in(-7.0, 7.0), n.one_in(2) ? 0.0 : n.in(-3.0, 3.0)};
+}
+
+/// How a body is turned becomes what nobody meant.
+void make_absurd_turn(Numbers& n, Case& c, double value) {
+  base::Body& body = n.one_in(2) ? c.tracks.front().body : c.paths.front().body;
+  (n.one_in(2) ? body.yaw : body.yaw_rate) = value;
+  c.absurd = true;
+  c.none = std::isnan(value) && body.solid != nullptr;
+}
+
 /// One number of the request becomes one that nobody meant.
-void make_absurd(Numbers& n, Case& c) {
-  if (c.tracks.empty()) c.tracks.emplace_back();
-  if (c.paths.empty()) c.paths.emplace_back().points.emplace_back();
+void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
+  if (c.tracks.empty()) {
+    c.tracks.emplace_back();
+    c.track_shapes.emplace_back();
+  }
+  if (c.paths.empty()) {
+    c.paths.emplace_back().points.emplace_back();
+    c.path_shapes.emplace_back();
+  }
   horizon::PathRequest& r = c.request;
   base::Track& track = c.tracks[n.below(c.tracks.size())];
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
@@ -184,12 +183,17 @@ void make_absurd(Numbers& n, Case& c) {
       kNaN, base::kInfinity, -base::kInfinity, 1e308, -1e308, 1e200, 1e160, -1e160, 1e15, -1e15, 1e9, -1e6, 1e5, -1.0,
       0.0,  5e-324};
   double& field = *fields[n.below(fields.size())];
-  field = values[n.below(values.size())];
+  const double value = values[n.below(values.size())];
+  if (of_bodies.one_in(8)) {
+    make_absurd_turn(of_bodies, c, value);
+    return;
+  }
+  field = value;
   c.absurd = true;
   c.none = std::isnan(field);
 }
 
-Case any_case(Numbers& n) {
+Case any_case(Numbers& n, Numbers& of_bodies) {
   Case c;
   c.settings = tiny_search(n);
   c.seed = n.below(65536);
@@ -217,84 +221,40 @@ Case any_case(Numbers& n) {
   for (std::size_t i = 0; i < paths; ++i) c.paths.push_back(any_path(n, r, 100 + i));
   c.open_loop = n.one_in(64);
   if (c.open_loop) r.velocity.setZero();
+  for (base::Track& track : c.tracks) give_body(of_bodies, track.body, track.radius, c.track_shapes.emplace_back());
+  for (geometry::KnownPath& path : c.paths) give_body(of_bodies, path.body, path.radius, c.path_shapes.emplace_back());
   return c;
 }
 
 // ---- The judge ----
 
-struct Place {
-  Real x = 0, y = 0, z = 0;
-
-  Place() = default;
-  explicit Place(const Vec3& v) : x(v.x()), y(v.y()), z(v.z()) {}
-  Place(Real x_, Real y_, Real z_) : x(x_), y(y_), z(z_) {}
-  Place operator+(const Place& o) const { return {x + o.x, y + o.y, z + o.z}; }
-  Place operator-(const Place& o) const { return {x - o.x, y - o.y, z - o.z}; }
-  Place operator*(Real s) const { return {x * s, y * s, z * s}; }
-  [[nodiscard]] Real length() const { return std::sqrt(x * x + y * y + z * z); }
-};
-
-/// A body on a timed path: stands before it and after it.
-class Walker {
+/// What is in a sphere: all of it, or a solid.
+class Outline {
  public:
-  Walker(const base::TimedPath& points, Real offset) : points_(points), offset_(offset) {
-    for (std::size_t i = 1; i < points.size(); ++i) fastest_ = std::max(fastest_, velocity(i).length());
+  Outline(const base::Body& body, const Shape& shape, double radius)
+      : radius_(radius), yaw_(body.yaw), rate_(body.yaw_rate) {
+    if (body.solid != nullptr) solid_.emplace(shape);
   }
-
-  [[nodiscard]] Place at(Real t) const {
-    const Real own = t + offset_;
-    if (own <= points_.front().t) return Place(points_.front().position);
-    if (own >= points_.back().t) return Place(points_.back().position);
-    std::size_t low = 0;
-    std::size_t high = points_.size() - 1;
-    while (high - low > 1) {
-      const std::size_t middle = low + (high - low) / 2;
-      (points_[middle].t <= own ? low : high) = middle;
-    }
-    return Place(points_[low].position) + velocity(high) * (own - points_[low].t);
+  /// From a place relative to the centre to the surface, at a time; where the sphere is as far as `enough`, no more
+  /// than that.
+  [[nodiscard]] Real distance(const Place& from, Real t, Real enough) const {
+    const Real sphere = from.length() - (solid_ ? solid_->reach() : radius_);
+    if (!solid_ || sphere >= enough) return sphere;
+    return solid_->nearest(fuzz::Turn(yaw_ + rate_ * t).back(from)).distance;
   }
-  [[nodiscard]] Real fastest() const { return fastest_; }
-  /// Mean velocity from point i - 1 to i.
-  [[nodiscard]] Place velocity(std::size_t i) const {
-    return (Place(points_[i].position) - Place(points_[i - 1].position)) *
-           (1 / (Real{points_[i].t} - Real{points_[i - 1].t}));
-  }
+  /// How fast its surface moves about the centre at most.
+  [[nodiscard]] Real turning() const { return solid_ ? std::abs(rate_) * solid_->reach() : 0; }
 
  private:
-  const base::TimedPath& points_;
-  Real offset_;
-  Real fastest_ = 0;
-};
-
-/// A body that a track tells: accelerated for a while, then not.
-class Thrown {
- public:
-  Thrown(const base::Track& track, Real trust, Real until)
-      : position_(track.position),
-        velocity_(track.velocity),
-        acceleration_(track.acceleration),
-        bend_(std::max(Real{0}, trust - Real{track.age})) {
-    fastest_ = velocity_.length() + acceleration_.length() * std::min(bend_, until);
-  }
-
-  [[nodiscard]] Place at(Real t) const {
-    const Real a = std::min(t, bend_);
-    const Place bent = position_ + velocity_ * a + acceleration_ * (a * a / 2);
-    return bent + (velocity_ + acceleration_ * a) * (t - a);
-  }
-  [[nodiscard]] Real fastest() const { return fastest_; }
-
- private:
-  Place position_, velocity_, acceleration_;
-  Real bend_;
-  Real fastest_ = 0;
+  Real radius_, yaw_, rate_;
+  std::optional<fuzz::JudgedSolid> solid_;
 };
 
 /// True unless two bodies come nearer than `distance` between two instants. In the middle of an interval they are at
 /// some distance, and to its ends it changes by no more than their speeds allow; else the interval is halved.
 template <typename Body>
-bool stay_apart(const Walker& vehicle, const Body& body, Real distance, Real begin, Real end) {
-  const Real speed = vehicle.fastest() + body.fastest();
+bool stay_apart(const Walker& vehicle, const Body& body, const Outline& outline, Real distance, Real begin, Real end) {
+  const Real speed = vehicle.fastest() + body.fastest() + outline.turning();
   struct Interval {
     Real begin, end;
   };
@@ -304,9 +264,9 @@ bool stay_apart(const Walker& vehicle, const Body& body, Real distance, Real beg
   while (count > 0) {
     const Interval i = open[--count];
     const Real middle = (i.begin + i.end) / 2;
-    const Real apart = (vehicle.at(middle) - body.at(middle)).length();
-    if (!(apart >= distance)) return false;
     const Real half = (i.end - i.begin) / 2;
+    const Real apart = outline.distance(vehicle.at(middle) - body.at(middle), middle, distance + speed * half);
+    if (!(apart >= distance)) return false;
     // Touching is apart: what a fraction of the tolerance decides is not looked at more closely.
     if (apart - speed * half >= distance || speed * half < kClearance / 100) continue;
     open[count++] = {middle, i.end};
@@ -319,15 +279,19 @@ bool stay_apart(const Walker& vehicle, const Body& body, Real distance, Real beg
 bool is_clear(const Case& c, const base::TimedPath& path, Real clearance, Real until) {
   const Walker vehicle(path, 0);
   const Real reach = Real{c.request.vehicle.radius} + clearance;
-  for (const base::Track& track : c.tracks) {
-    const Thrown body(track, c.request.acceleration_trust, until);
-    if (!stay_apart(vehicle, body, reach + track.radius, 0, until)) return false;
+  for (std::size_t i = 0; i < c.tracks.size(); ++i) {
+    const base::Track& track = c.tracks[i];
+    const fuzz::Thrown body(track, c.request.acceleration_trust, until);
+    const Outline outline(track.body, c.track_shapes[i], track.radius);
+    if (!stay_apart(vehicle, body, outline, reach, 0, until)) return false;
   }
-  for (const geometry::KnownPath& known : c.paths) {
+  for (std::size_t i = 0; i < c.paths.size(); ++i) {
+    const geometry::KnownPath& known = c.paths[i];
     const Real end = std::min(until, Real{known.until});
     if (end <= 0) continue;
     const Walker body(known.points, known.offset);
-    if (!stay_apart(vehicle, body, reach + known.radius, 0, end)) return false;
+    const Outline outline(known.body, c.path_shapes[i], known.radius);
+    if (!stay_apart(vehicle, body, outline, reach, 0, end)) return false;
   }
   return true;
 }
@@ -434,11 +398,13 @@ void follow(Numbers& n, Case& c, base::WorkerPool& pool) {
     track.position += bend * track.velocity + 0.5 * bend * bend * track.acceleration + (t - bend) * velocity;
     track.velocity = velocity;
     track.age += t;
+    track.body = track.body.later(t);
   }
   for (geometry::KnownPath& path : c.paths) {
     path.offset += t;
     path.age += t;
     path.until -= t;
+    path.body = path.body.later(t);
   }
   const base::TimedPoint now = base::sample(before.path, t);
   c.request.position = now.position;
@@ -499,12 +465,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static base::WorkerPool one(1);
   static base::WorkerPool two(2);
   Numbers n(data, size);
-  Case c = any_case(n);
+  Numbers of_bodies = n.others();
+  Case c = any_case(n, of_bodies);
   if (!c.open_loop && n.one_in(3)) {
     follow(n, c, one);
     if (n.one_in(3)) spoil(n, c);
   }
-  if (n.one_in(6)) make_absurd(n, c);
+  if (n.one_in(6)) make_absurd(n, of_bodies, c);
   const verify::Plan plan = make_plan(c, one);
   check_plan(c, plan);
   tally.add(plan, c.open_loop);
