@@ -36,7 +36,7 @@ struct Cube {
 };
 struct Triangles {
   Vec3 origin = Vec3::Zero();
-  std::span<const Vec3> points{};
+  std::vector<Vec3> points{};
   std::span<const report::Triangle> faces{};
   Color color{};
 };
