@@ -10,8 +10,9 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr int kRefinements = 3;  // halvings of the spacing
-constexpr int kStepsLater = 3;   // after which the place is looked for again
+constexpr int kRefinements = 3;   // halvings of the spacing
+constexpr int kMostMoves = 1000;  // of a place, which out of what is larger than a world leads nowhere
+constexpr int kStepsLater = 3;    // after which the place is looked for again
 
 /// An obstacle at one time.
 struct Blocker {
@@ -49,8 +50,9 @@ double lacking(const std::vector<Blocker>& blockers, const Vec3& place) {
 Gap refined(const std::vector<Blocker>& blockers, const geometry::PathFrame& frame, const base::Box& volume,
             double spacing, Gap place) {
   double step = 0.5 * spacing;
+  int moves = 0;
   for (int n = 0; n < kRefinements && place.lacking > 0.0; step *= 0.5, ++n) {
-    for (bool moved = true; moved;) {
+    for (bool moved = true; moved && moves < kMostMoves; ++moves) {
       moved = false;
       for (const Vec3& side : {frame.left, Vec3(-frame.left), frame.up, Vec3(-frame.up)}) {
         const Vec3 to = place.position + step * side;
