@@ -206,13 +206,13 @@ struct ClearanceLanes {
           dip_weight(soft > hard ? weight_ : 0.0),
           weight(weight_) {}
 
-    [[gnu::always_inline]] void add(double distance, double& dip, double& violation) const {
+    [[gnu::always_inline]] void add(double distance, double& dips, double& violations) const {
       const double depth = (soft - distance) / extra;
       const double positive = depth > 0.0 ? depth : 0.0;
       const double bounded = positive < 1.0 ? positive : 1.0;
-      dip += dip_weight * (bounded * bounded);
+      dips += dip_weight * (bounded * bounded);
       const double deep = hard - distance;
-      violation += weight * (deep > 0.0 ? deep : 0.0);
+      violations += weight * (deep > 0.0 ? deep : 0.0);
     }
   };
 };
