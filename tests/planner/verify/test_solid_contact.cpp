@@ -229,7 +229,7 @@ TEST(SolidContact, DistanceIsThatOfTheJudge) {
     const fuzz::Shape shape = fuzz::any_shape(n);
     const base::Body body{shape.solid(), n.in(-4.0, 4.0), 0.0};
     const Vec3 point = n.vec(n.scale(0.1, 30.0));
-    const fuzz::Place seen = fuzz::Turn(fuzz::Real{body.yaw}).back(fuzz::Place(point));
+    const fuzz::Place seen = fuzz::Turn(static_cast<fuzz::Real>(body.yaw)).back(fuzz::Place(point));
     const double judged = static_cast<double>(fuzz::JudgedSolid(shape).nearest(seen).distance);
     EXPECT_NEAR(solid_distance(body, point), judged, 1e-11) << seed;
   }
@@ -248,7 +248,7 @@ Sampled sampled(const base::TimedPath& path, const base::Track& track, const fuz
   for (int k = 0; k <= kSteps; ++k) {
     const double t = path.back().t * k / kSteps;
     const Vec3 apart = base::sample(path, t).position - track.position - t * track.velocity;
-    const fuzz::Turn turn(fuzz::Real{track.body.yaw + t * track.body.yaw_rate});
+    const fuzz::Turn turn(static_cast<fuzz::Real>(track.body.yaw + t * track.body.yaw_rate));
     const double clearance = static_cast<double>(judge.nearest(turn.back(fuzz::Place(apart))).distance) - radius;
     result.least = std::min(result.least, clearance);
     if (clearance < 0.0 && !result.first) result.first = t;
