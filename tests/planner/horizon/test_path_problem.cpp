@@ -338,29 +338,34 @@ TEST(PathProblem, WaypointsStayInTheVolumeAndLeavingItIsAViolation) {
   }
 }
 
+/// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition.
+void add_to_cost(double distance, const base::Track& track, double t, const base::HorizonSettings& s,
+                 const PathRequest& r, optimizer::Cost& cost) {
+  const double weight = s.step / (0.5 + t);
+  const double ahead = t + s.step + track.age;
+  const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
+  const double extra = std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
+  const double hard = r.vehicle.radius + r.margin;
+  cost.violation += weight * std::max(0.0, hard - distance);
+  if (extra > 0.0) {
+    const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+    cost.f[2] += weight * depth * depth;
+  }
+}
+
 /// f3 and violation by their definition, from every track, nothing left out.
 optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSettings& s, const PathRequest& r,
                                const base::TimedPath& path) {
   optimizer::Cost cost;
   for (int n = 0; n < problem.steps(); ++n) {
     const double t = n * s.step;
-    const double weight = s.step / (0.5 + t);
     const Vec3 from = base::sample(path, t).position;
     const Vec3 to = base::sample(path, (n + 1) * s.step).position;
     for (const base::Track& track : r.tracks) {
       const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
       const Vec3 d = geometry::predict_position(track, (n + 1) * s.step, r.acceleration_trust);
-      const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d));
-      const double ahead = (n + 1) * s.step + track.age;
-      const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
-      const double extra =
-          std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
-      const double hard = track.radius + r.vehicle.radius + r.margin;
-      cost.violation += weight * std::max(0.0, hard - distance);
-      if (extra > 0.0) {
-        const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
-        cost.f[2] += weight * depth * depth;
-      }
+      const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d)) - track.radius;
+      add_to_cost(distance, track, t, s, r, cost);
     }
   }
   return cost;
@@ -437,7 +442,6 @@ optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSett
   optimizer::Cost cost;
   for (int n = 0; n < problem.steps(); ++n) {
     const double begin = n * s.step;
-    const double weight = s.step / (0.5 + begin);
     for (const base::Track& track : r.tracks) {
       double distance = base::kInfinity;
       for (int i = 0; i <= kPlaces; ++i) {
@@ -445,14 +449,7 @@ optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSett
         const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
         distance = std::min(distance, PlacedSolid(track.body, c, t).distance(base::sample(path, t).position));
       }
-      const double ahead = begin + s.step + track.age;
-      const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
-      const double extra =
-          std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
-      const double hard = r.vehicle.radius + r.margin;
-      cost.violation += weight * std::max(0.0, hard - distance);
-      const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
-      cost.f[2] += weight * depth * depth;
+      add_to_cost(distance, track, begin, s, r, cost);
     }
   }
   return cost;

@@ -116,13 +116,18 @@ TEST(World, ObstaclesAreTurnedAndTurn) {
   EXPECT_NEAR(World(scenario_with({plank})).clearance({1, 0, 3}, 0.0), 1.0 - kVehicleRadius, 1e-12);
 }
 
+/// One obstacle; all shapes and motions come in turn with the seeds.
+World any_obstacle(RandomStream& random, std::uint64_t seed) {
+  const config::Shape shape = testing::random_shape(random, seed % testing::kShapeKinds);
+  const config::Motion motion = testing::random_motion(random, seed % testing::kMotionKinds);
+  return World(scenario_with({testing::random_obstacle(random, shape, motion)}));
+}
+
 // What a track tells is the shape that is there: from afar, near by and inside, whatever the shape and its turn.
 TEST(World, ExactTracksHaveTheTrueSurface) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     RandomStream random(33, seed);
-    const config::Shape shape = testing::random_shape(random, seed % testing::kShapeKinds);
-    const config::Motion motion = testing::random_motion(random, seed % testing::kMotionKinds);
-    const World world(scenario_with({testing::random_obstacle(random, shape, motion)}));
+    const World world = any_obstacle(random, seed);
     const double t = random.uniform(0, 8);
     const planner::base::Track track = world.exact_track(0, t);
     ASSERT_TRUE(planner::geometry::is_valid(track)) << seed;
@@ -284,9 +289,7 @@ TEST(Sweep, IsTheMinimumOfTheClearance) {
 TEST(Sweep, OfTwoHalvesIsThatOfTheWhole) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     RandomStream random(32, seed);
-    const config::Shape shape = testing::random_shape(random, seed % testing::kShapeKinds);
-    const config::Motion motion = testing::random_motion(random, seed % testing::kMotionKinds);
-    const World world(scenario_with({testing::random_obstacle(random, shape, motion)}));
+    const World world = any_obstacle(random, seed);
     const Vec3 p0 = testing::random_vector(random, -5, 5);
     const Vec3 p1 = testing::random_vector(random, -5, 5);
     const double whole = world.sweep(p0, 1.0, p1, 4.0).min_clearance;
