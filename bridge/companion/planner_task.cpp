@@ -6,11 +6,20 @@
 #include <utility>
 
 namespace jink::bridge::companion {
+namespace {
+
+// What climbs and what stops has nowhere to go.
+void lead(planner::horizon::Guide& guide, PlanJob& job) {
+  if (job.goal == Goal::Kind::kWaypoint) guide.lead(job.request, job.start);
+}
+
+}  // namespace
 
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
     : settings_(settings),
       clock_(clock),
       done_(done),
+      guide_(settings.horizon, planner::horizon::Guide::Knowledge::kSensed),
       planner_(settings.horizon, settings.optimizer),
       pool_(settings.threads),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -57,6 +66,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     try {
       const double begun = clock_.now();
       const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
+      lead(guide_, result.job);
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::base::Budget budget{
           settings_.horizon.generations,
@@ -76,13 +86,18 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
 }
 
 VirtualPlanner::VirtualPlanner(const PlannerTaskSettings& settings, double latency)
-    : settings_(settings), latency_(latency), planner_(settings.horizon, settings.optimizer), pool_(settings.threads) {}
+    : settings_(settings),
+      latency_(latency),
+      guide_(settings.horizon, planner::horizon::Guide::Knowledge::kSensed),
+      planner_(settings.horizon, settings.optimizer),
+      pool_(settings.threads) {}
 
 void VirtualPlanner::start(PlanJob job) {
   assert(!result_);
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
   const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
+  lead(guide_, result.job);
   const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);

@@ -14,6 +14,7 @@
 #include "bridge/base/notifier.hpp"
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/setpoints/tracking_offset.hpp"
+#include "planner/horizon/guide.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 
 namespace jink::bridge::companion {
@@ -35,6 +36,7 @@ struct PlanJob {
   std::vector<planner::geometry::KnownPath> paths;  ///< of the team's other vehicles
   planner::base::TimedPath previous;                ///< times from `start` on
   Goal::Kind goal = Goal::Kind::kWaypoint;
+  Vec3 target = Vec3::Zero();  ///< of the goal; the guide may lead to another first, which is the request's
   std::uint64_t number = 0;
   double begun = 0.0;
   double start = 0.0;
@@ -106,6 +108,7 @@ class ThreadedPlanner final : public PlannerTask {
   PlannerTaskSettings settings_;
   const base::Clock& clock_;
   base::Notifier* done_;
+  planner::horizon::Guide guide_;
   planner::horizon::HorizonPlanner planner_;
   planner::base::WorkerPool pool_;
   mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_
@@ -129,6 +132,7 @@ class VirtualPlanner final : public PlannerTask {
  private:
   PlannerTaskSettings settings_;
   double latency_;
+  planner::horizon::Guide guide_;
   planner::horizon::HorizonPlanner planner_;
   planner::base::WorkerPool pool_;
   std::optional<PlanResult> result_;

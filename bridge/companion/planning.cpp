@@ -72,7 +72,10 @@ std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
   ++plans_;
   stays_at_end_ = stays_at(end, result->plan) && (mission_.arrival == config::Arrival::kHold || lands_free(*result));
   reporter_.plan(now, *result);
-  if (!result->plan.path.empty()) newest_plan_ = result->job.begun;
+  if (result->plan.path.empty()) return result;
+  newest_plan_ = result->job.begun;
+  planned_for_ = result->job.target;
+  planned_to_ = result->plan.path.back().position;
   return result;
 }
 
@@ -155,6 +158,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   const setpoints::SetpointStream& stream = motion.stream();
   PlanJob job;
   job.goal = goal.kind;
+  job.target = goal.target;
   job.number = plans_;
   job.begun = now;
   job.start = now + std::max(planner_.latency(), settings_.companion.commitment + state.link_delay);
@@ -192,8 +196,9 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   if (cautious) request.vehicle.cruise_speed *= kCautious;
   if (!from_vehicle) {
     job.previous = stream.plan(job.start);
-    // A plan to another waypoint is no plan to keep.
-    if (!job.previous.empty() && (job.previous.back().position - request.target).norm() > 1e-6) job.previous.clear();
+    // A plan to another waypoint is no plan to keep; one to a place on the way there is.
+    const Vec3& leads_to = planned_for_ == request.target ? planned_to_ : request.target;
+    if (!job.previous.empty() && (job.previous.back().position - leads_to).norm() > 1e-6) job.previous.clear();
     if (!job.previous.empty()) job.previous = rejoined(std::move(job.previous), request.position, request.velocity);
     for (planner::base::TimedPoint& point : job.previous) point.t -= job.start;
   }

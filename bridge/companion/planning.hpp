@@ -77,6 +77,8 @@ class Planning {
   bool new_tracks_ = false;  // since then
   double rate_kept_ = 0.0;   // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;
+  Vec3 planned_for_ = Vec3::Zero();  // by the newest plan: the goal's target,
+  Vec3 planned_to_ = Vec3::Zero();   // and where its path ends, which may be on the way there
   std::uint64_t plans_ = 0;
   bool stays_at_end_ = false;
   bool failed_ = false;

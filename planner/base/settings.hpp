@@ -104,6 +104,11 @@ struct HorizonSettings {
   int encounters = 3;              ///< the first obstacles met that they lead past
   int gaps = 3;                    ///< that they lead through, at each of the times at which they do
   double gap_spacing = 0.5;        ///< between two of the places across the path looked at for a gap
+  bool guide = true;               ///< whether plans lead along a way round what stands, where there is need for one
+  double guide_margin = 0.1;       ///< kept from what stands by a way; the margin gives way down to it, with speed
+  double guide_cell = 0.5;         ///< between two places of the grid that ways are looked for on; half where none is
+  int guide_places = 1500;         ///< of the grid, that are looked at for each plan
+  double guide_deviation = 1.0;    ///< m, of a way from the straight line, up to which plans need no guide
   double keep_ratio = 0.05;        ///< a previous plan is kept unless one that goes another way is better by this
   double search_ratio = 0.01;      ///< a previous plan that is nearer to unobstructed flight is kept without a search
   double keep_limits = 1.1;        ///< times the limits, up to which it counts: who is beside it is led back to it

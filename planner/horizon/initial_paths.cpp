@@ -100,6 +100,23 @@ base::TimedPath warped(const base::TimedPath& unobstructed, std::span<const doub
   return path;
 }
 
+/// From the vehicle along the request's way at a speed, m/s, as far as it leads.
+base::TimedPath along_way(const PathRequest& request, std::span<const double> times, double speed) {
+  base::TimedPath path;
+  for (const double time : times) {
+    Vec3 place = request.position;
+    double left = speed * time;
+    for (std::size_t i = 0; i < request.way.size() && left > 0.0; ++i) {
+      const Vec3 leg = request.way[i] - place;
+      const double length = leg.norm();
+      place = length > left ? Vec3(place + left / length * leg) : request.way[i];
+      left -= length;
+    }
+    path.push_back({time, place, Vec3::Zero(), Vec3::Zero()});
+  }
+  return path;
+}
+
 /// Unobstructed flight as far as `distance` from its start, and a gentle stop there.
 base::TimedPath stopped_short(const base::TimedPath& unobstructed, std::span<const double> times, double distance,
                               const Vec3& heading, const base::HorizonSettings& settings) {
@@ -127,6 +144,10 @@ std::vector<base::TimedPath> initial_paths(const PathRequest& request, const bas
   const std::vector<double> times = waypoint_times(settings);
   const double until = settings.horizon();
   const std::vector<Encounter> met = encounters(request, unobstructed, until, settings);
+  if (!request.way.empty()) {
+    for (const double rate : {1.0, 0.7, 0.4})
+      paths.push_back(along_way(request, times, rate * request.vehicle.cruise_speed));
+  }
   if (!met.empty()) add_ways_through(paths, request, frame, unobstructed, times, met.front(), settings);
   for (const Encounter& e : met) {
     for (const Vec3& displacement : ways_past(e, frame.axis)) {

@@ -12,6 +12,7 @@
 namespace jink::planner::horizon {
 
 /// Paths from the request's state, one point at each waypoint's time, settings.leg() apart:
+/// - along the request's way, where it has one, at cruise speed and slower;
 /// - through the clearest places across the path where the first obstacle is met (find_gaps()), at the times of
 ///   passages(), waiting before it until then;
 /// - unobstructed flight delayed, slowed and hurried (waiting, and letting pass), and a stop;

@@ -9,6 +9,7 @@
 
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/elastic_band.hpp"
+#include "planner/horizon/guide.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/path_check.hpp"
 
@@ -64,6 +65,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
   std::vector<geometry::KnownPath> paths(request.path.paths.begin(), request.path.paths.end());
   from.paths = paths;
   base::TimedPath previous;
+  Guide guide(planner.settings(), Guide::Knowledge::kWhole);
   double t = 0.0;
   for (std::uint64_t number = 0;; ++number) {
     std::transform(request.path.tracks.begin(), request.path.tracks.end(), now.begin(),
@@ -74,7 +76,9 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
       paths[i].age = at_start.age + t;
       paths[i].until = at_start.until - t;
     }
-    verify::Plan part = planner.plan(from, previous, seed, number, budget, pool);
+    PathRequest led = from;
+    guide.lead(led, t);
+    verify::Plan part = planner.plan(led, previous, seed, number, budget, pool);
     if (part.status == verify::PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;
     whole.evaluations += part.evaluations;
@@ -84,7 +88,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     const double end = part.path.back().t;
     // What is known to be free: to the target, or as far as was looked ahead. Without time left that is the result.
     double wanted = std::min(request.commit, end);
-    if (part.status == verify::PlanStatus::kReaches) wanted = end;
+    if (part.status == verify::PlanStatus::kReaches && led.target == from.target) wanted = end;
     if (part.status == verify::PlanStatus::kProgresses && budget.expired()) wanted = std::min(part.horizon, end);
     const double keep = std::min(at_a_point(part.path, wanted), request.time_limit - t);
     append(part.path, t, keep, whole.path);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planner/horizon/path_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -19,6 +20,8 @@ bool is_valid(const PathRequest& request) {
   return is_within(request.position, geometry::kFarthest) && is_within(request.velocity, geometry::kFastest) &&
          is_within(request.target, geometry::kFarthest) && geometry::is_valid(request.vehicle) &&
          is_amount(request.margin) && is_amount(request.track_acceleration, geometry::kHardest) &&
+         std::all_of(request.way.begin(), request.way.end(),
+                     [](const Vec3& place) { return is_within(place, geometry::kFarthest); }) &&
          geometry::is_valid_world(request.volume, request.tracks, request.paths, request.acceleration_trust);
 }
 

@@ -32,6 +32,7 @@ struct PathRequest {
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
   bool visit = false;                            ///< to have been at the target is enough: it need not stay free
+  std::vector<Vec3> way{};  ///< corners of a way to the target that a search begins with, the target last; or none
 };
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where

@@ -182,7 +182,7 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, margin, track_acceleration,
-               trust, stuck, visit] = job.request;
+               trust, stuck, visit, way] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -193,6 +193,9 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
   line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
   line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
+  line_.key("way").open('[');
+  for (const Vec3& place : way) line_.exact_vector(place);
+  line_.close(']');
   line_.key("tracks").open('[');
   for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age, body] : job.tracks) {
     line_.open('[').integer(id);

@@ -189,6 +189,9 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   // Older logs have no such key.
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
   if (from.contains("visit")) request.visit = flag_of(from, "visit");
+  if (from.contains("way")) {
+    for (const Json& place : list_of(from, "way")) request.way.push_back(exact_vector(place, "way"));
+  }
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
   if (!(request.margin >= 0.0) || !(request.track_acceleration >= 0.0) || !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/guide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "planner/horizon/path_check.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr double kAtRest = 0.1;         // m/s, up to which something rests
+constexpr double kSettled = 1.0;        // s, for which it has rested to stand
+constexpr double kRemembered = 60.0;    // s, since it was seen
+constexpr double kTheSame = 0.3;        // m, that it may move meanwhile
+constexpr double kSigmas = 1.0;          // of its position, that something counts as larger
+constexpr double kFineGrid = 0.5;       // times the cell, where a coarse grid has no way
+constexpr double kSearchAgain = 2.0;    // s, after a search that found none
+constexpr double kNarrower = 0.05;         // m, by which a way may get narrower until another is looked for
+constexpr double kRoom = 0.1;           // m, beside the middle of a narrow place, for the vehicle to pass it
+constexpr double kStrayed = 2.5;        // m, from the way, where it is looked for anew
+constexpr double kAhead = 5.0;          // m, along the way, that a vehicle may have gone since
+constexpr double kSlowDownAhead = 4.0;  // m, of a narrow place
+constexpr double kSample = 0.25;        // m, along a way
+constexpr double kSlowestShare = 0.3;        // of the cruise speed, in the narrowest place
+constexpr double kGain = 0.5;           // m, of the way, in
+constexpr double kPatience = 4.0;       // s, by a vehicle that is not stuck
+constexpr int kHalvings = 6;            // of a leg, to the farthest place in sight
+constexpr int kMissed = 8;              // places out of sight, after which none farther is looked at
+
+double distance_to_line(const Vec3& place, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double squared = way.squaredNorm();
+  const double share = squared > 0.0 ? std::clamp((place - from).dot(way) / squared, 0.0, 1.0) : 0.0;
+  return (place - from - share * way).norm();
+}
+
+double length_of(std::span<const Vec3> way) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
+  return length;
+}
+
+bool rests(const base::Track& track) {
+  return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + 2.0 * track.velocity_sigma;
+}
+
+}  // namespace
+
+void Guide::lead(PathRequest& request, double now) {
+  if (!settings_.guide || !is_valid(request)) return;
+  notice(request, now);
+  if ((request.target - target_).squaredNorm() > 0.0) {
+    target_ = request.target;
+    way_.clear();
+    search_ = {};
+    search_again_ = now;
+  }
+  if (standing_.empty() ||
+      standing_.is_clear(request.position, request.target, request.vehicle.radius + request.margin)) {
+    way_.clear();
+    search_ = {};
+    return;
+  }
+  if (way_.empty() || !pass(request.position) || !is_open(way_, request)) look_for_way(request, now);
+  if (way_.empty()) return;
+  slow_down(request);
+  const double left = (way_.front() - request.position).norm() + length_of(way_);
+  request.stuck = request.stuck && !gains(left, now);
+  const std::size_t leg = lead_ahead(request);
+  request.visit = request.visit && request.target == target_;
+  request.way.assign(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg));
+  request.way.push_back(request.target);
+}
+
+// What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
+void Guide::notice(const PathRequest& request, double now) {
+  if (knowledge_ == Knowledge::kWhole) {
+    std::vector<base::Track> standing;
+    std::copy_if(request.tracks.begin(), request.tracks.end(), std::back_inserter(standing), rests);
+    stand(standing);
+    return;
+  }
+  double sight = 0.0;
+  for (const base::Track& track : request.tracks) {
+    sight = std::max(sight, (track.position - request.position).norm());
+    const auto known = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& s) { return s.track.id == track.id; });
+    if (!rests(track)) {
+      if (known != seen_.end()) seen_.erase(known);
+    } else if (known == seen_.end()) {
+      seen_.push_back({track, now, now});
+    } else {
+      const bool moved = (known->track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
+      *known = {track, moved ? now : known->since, now};
+    }
+  }
+  std::erase_if(seen_, [&](const Seen& s) {
+    return s.last < now &&
+           (now - s.last > kRemembered || (s.track.position - request.position).norm() < sight);
+  });
+  std::vector<base::Track> standing;
+  for (const Seen& s : seen_)
+    if (now - s.since >= kSettled) standing.push_back(s.track);
+  stand(standing);
+}
+
+void Guide::stand(std::span<const base::Track> standing) {
+  standing_.set(standing, kSigmas);
+  sigma_ = 0.0;
+  for (const base::Track& track : standing) sigma_ = std::max(sigma_, track.position_sigma);
+}
+
+// On a coarse grid, then on a fine one. What was found is still led along meanwhile.
+void Guide::look_for_way(const PathRequest& request, double now) {
+  if (now < search_again_) return;
+  const double wanted = std::max(request.margin, settings_.guide_margin) + settings_.seed_clearance;
+  const base::VehicleLimits& vehicle = request.vehicle;
+  const GridQuery query{request.position,       request.target, request.volume,
+                        vehicle.radius,         settings_.guide_margin, wanted,
+                        vehicle.cruise_speed / vehicle.max_climb, settings_.guide_cell};
+  if (search_.state() != GridSearch::State::kSearching) search_.begin(query);
+  const int places =
+      knowledge_ == Knowledge::kWhole ? std::numeric_limits<int>::max() : settings_.guide_places;
+  GridSearch::State state = search_.advance(standing_, places);
+  if (state == GridSearch::State::kNone && search_.query().cell == settings_.guide_cell) {
+    GridQuery fine = query;
+    fine.cell *= kFineGrid;
+    search_.begin(fine);
+    state = search_.advance(standing_, places);
+  }
+  if (state == GridSearch::State::kSearching) return;
+  search_again_ = state == GridSearch::State::kNone ? now + kSearchAgain : now;
+  way_ = state == GridSearch::State::kFound ? pulled_tight(search_.way(), request) : std::vector<Vec3>();
+  search_ = {};
+  least_left_ = base::kInfinity;
+  if (!way_.empty() && !is_open(way_, request)) way_.clear();  // what stands has changed since
+}
+
+// From each place to the farthest in sight that is no nearer to anything than the places between them are.
+std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const {
+  const double wanted = request.vehicle.radius + request.margin + settings_.seed_clearance;
+  std::vector<double> clearance;
+  for (const Vec3& place : way) clearance.push_back(standing_.distance(place, wanted));
+  std::vector<Vec3> tight{way.front()};
+  for (std::size_t i = 0; i + 1 < way.size();) {
+    std::size_t farthest = i + 1;
+    double kept = std::min(clearance[i], clearance[i + 1]);
+    int missed = 0;
+    for (std::size_t j = i + 2; j < way.size() && missed < kMissed; ++j) {
+      kept = std::min(kept, clearance[j]);
+      if (standing_.is_clear(way[i], way[j], kept)) {
+        farthest = j;
+        missed = 0;
+      } else {
+        ++missed;
+      }
+    }
+    tight.push_back(way[farthest]);
+    i = farthest;
+  }
+  return tight;
+}
+
+// The first leg begins where the vehicle is, wherever that is.
+bool Guide::is_open(std::span<const Vec3> way, const PathRequest& request) const {
+  const double kept = request.vehicle.radius + std::max(0.0, settings_.guide_margin - kNarrower);
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double least = i == 1 ? std::min(kept, standing_.distance(way[0], kept)) : kept;
+    if (!standing_.is_clear(way[i - 1], way[i], least)) return false;
+  }
+  return true;
+}
+
+// Takes off the part of the way that the vehicle has gone; false where it has left the way.
+bool Guide::pass(const Vec3& position) {
+  double least = base::kInfinity;
+  double gone = 0.0;
+  std::size_t leg = 1;
+  Vec3 nearest = way_.front();
+  for (std::size_t i = 1; i < way_.size() && gone <= kAhead; ++i) {
+    const Vec3 along = way_[i] - way_[i - 1];
+    const double squared = along.squaredNorm();
+    const double share = squared > 0.0 ? std::clamp((position - way_[i - 1]).dot(along) / squared, 0.0, 1.0) : 0.0;
+    const Vec3 place = way_[i - 1] + share * along;
+    if ((place - position).norm() < least) {
+      least = (place - position).norm();
+      leg = i;
+      nearest = place;
+    }
+    gone += along.norm();
+  }
+  way_.erase(way_.begin(), way_.begin() + static_cast<std::ptrdiff_t>(leg) - 1);
+  way_.front() = nearest;
+  return least <= kStrayed;
+}
+
+void Guide::slow_down(PathRequest& request) const {
+  const double radius = request.vehicle.radius;
+  const double enough = radius + request.margin + kRoom;
+  double narrowest = enough;
+  double looked = 0.0;
+  for (std::size_t i = 1; i < way_.size() && looked < kSlowDownAhead; ++i) {
+    const double length = (way_[i] - way_[i - 1]).norm();
+    for (double at = 0.0; at <= length && looked + at < kSlowDownAhead; at += kSample) {
+      const Vec3 place = way_[i - 1] + at / std::max(length, kSample) * (way_[i] - way_[i - 1]);
+      narrowest = standing_.distance(place, narrowest);
+    }
+    looked += length;
+  }
+  if (narrowest >= enough) return;
+  const double margin =
+      std::min(request.margin, std::max(settings_.guide_margin, narrowest - radius - kRoom) + kSigmas * sigma_);
+  const double share = std::max(kSlowestShare, margin / request.margin);
+  request.margin = margin;
+  request.vehicle.cruise_speed *= share;
+}
+
+// To the farthest place on the way in sight, or so that what is cut off the way is small. Returns the end of its leg.
+std::size_t Guide::lead_ahead(PathRequest& request) const {
+  const double kept = request.vehicle.radius + request.margin;
+  const auto is_near = [&](std::size_t leg, const Vec3& place) {
+    bool near = true;
+    for (std::size_t i = 1; near && i < leg; ++i)
+      near = distance_to_line(way_[i], request.position, place) <= settings_.guide_deviation;
+    return near || standing_.is_clear(request.position, place, kept);
+  };
+  std::size_t leg = way_.size() - 1;
+  while (leg > 1 && !is_near(leg, way_[leg])) --leg;
+  if (leg + 1 == way_.size()) return leg;
+  // Somewhere on the next leg.
+  double near = 0.0;
+  double far = 1.0;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = 0.5 * (near + far);
+    (is_near(leg + 1, way_[leg] + middle * (way_[leg + 1] - way_[leg])) ? near : far) = middle;
+  }
+  request.target = way_[leg] + near * (way_[leg + 1] - way_[leg]);
+  return leg + 1;
+}
+
+// Whether less of the way is left than there was for long.
+bool Guide::gains(double left, double now) {
+  if (left < least_left_ - kGain) {
+    least_left_ = left;
+    gained_at_ = now;
+  }
+  return now - gained_at_ <= kPatience;
+}
+
+}  // namespace jink::planner::horizon

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The way through what stands: round houses, through doors, out of dead ends. It says where to plan to; what is flown is
+// planned and verified as ever. What moves is not looked at here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "planner/base/settings.hpp"
+#include "planner/base/types.hpp"
+#include "planner/horizon/grid_search.hpp"
+#include "planner/horizon/path_problem.hpp"
+#include "planner/horizon/standing.hpp"
+
+namespace jink::planner::horizon {
+
+/// Leads one flight. Not thread-safe. The same bits for the same calls.
+class Guide {
+ public:
+  /// How much is known of what stands.
+  enum class Knowledge {
+    kSensed,  ///< tracks come and go: what has rested for a second stands, and is remembered where nothing is seen
+    kWhole    ///< what stands is among the tracks from the start on, and a search may take its time
+  };
+  /// Leads nowhere where settings.guide is false.
+  Guide(const base::HorizonSettings& settings, Knowledge knowledge) : settings_(settings), knowledge_(knowledge) {}
+
+  /// Where the straight way to the target leads through what stands, and the way round goes farther from it than
+  /// settings.guide_deviation, `target` becomes a place on that way, in sight or nearly. Where the way is narrower than
+  /// the margin, that is as small as it has to be, at least settings.guide_margin, and the vehicle as much slower.
+  /// `now`: s, in a clock that goes on. Looks at settings.guide_places places of the grid at most, so that a way may be
+  /// found some calls later.
+  void lead(PathRequest& request, double now);
+
+  /// The way that is led along, from beside the vehicle to the target; empty: straight on. ENU, m.
+  [[nodiscard]] std::span<const Vec3> way() const { return way_; }
+
+ private:
+  /// Something that rests.
+  struct Seen {
+    base::Track track;
+    double since = 0.0, last = 0.0;
+  };
+  void notice(const PathRequest& request, double now);
+  void stand(std::span<const base::Track> standing);
+  void look_for_way(const PathRequest& request, double now);
+  [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const;
+  [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
+  bool pass(const Vec3& position);
+  void slow_down(PathRequest& request) const;
+  std::size_t lead_ahead(PathRequest& request) const;
+  [[nodiscard]] bool gains(double left, double now);
+
+  base::HorizonSettings settings_;
+  Knowledge knowledge_;
+  std::vector<Seen> seen_;
+  Standing standing_;
+  double sigma_ = 0.0;  // m, the largest standard deviation of their positions
+  GridSearch search_;
+  std::vector<Vec3> way_;
+  Vec3 target_ = Vec3::Zero();      // of the flight
+  double search_again_ = 0.0;       // s, when, after one that found none
+  double least_left_ = base::kInfinity;  // m, of the way
+  double gained_at_ = 0.0;          // s
+};
+
+}  // namespace jink::planner::horizon
