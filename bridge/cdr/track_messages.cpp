@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,9 @@ using planner::base::Solid;
 using planner::base::Track;
 
 constexpr std::size_t kWireTrack_bytes = 8 + 9 * 8 + 3 * 8;
+// At the least: without vertices, and where the type stands in the four bytes before a double.
+constexpr std::size_t kWireShape_bytes = 4 + (3 + 4 + 1 + 3) * 8 + 4;
+constexpr std::size_t kVertex_bytes = 3 * 8;
 
 // In the order of the IDL.
 Track take_track(CdrInput& input, bool ned) {
@@ -173,6 +177,51 @@ Track take_object(CdrInput& input) {
   return track;
 }
 
+// The solid of a shape; null where it is none. Throws std::invalid_argument where a number of it is none.
+std::shared_ptr<const Solid> solid_of(ShapeOnWire type, const Vec3& size, const Solid::Pose& pose,
+                                      std::vector<Vec3> vertices) {
+  switch (type) {
+    case ShapeOnWire::kBox:
+      return Solid::box(size, pose);
+    case ShapeOnWire::kCylinder:
+      return Solid::cylinder(0.5 * size.x(), size.z(), pose);
+    case ShapeOnWire::kCapsule: {
+      const Vec3 along = 0.5 * (size.z() - size.x()) * pose.axes.col(2);
+      if (size.z() < size.x()) return nullptr;
+      return Solid::capsule(0.5 * size.x(), pose.center - along, pose.center + along);
+    }
+    case ShapeOnWire::kHull:
+      return vertices.size() > kMostVertices ? nullptr : Solid::hull(std::move(vertices));
+    case ShapeOnWire::kSphere:
+      break;
+  }
+  return nullptr;
+}
+
+// In the order of the IDL; nothing where it is no shape. `to_enu` turns the message's frame.
+std::optional<planner::base::Body> take_body(CdrInput& input, const Eigen::Matrix3d& to_enu) {
+  const auto type = static_cast<ShapeOnWire>(input.take<std::uint8_t>());
+  Solid::Pose pose;
+  pose.center = to_enu * take_vec3(input);
+  pose.axes = to_enu * rotation(take_quaternion(input), false);
+  const double yaw_rate = to_enu(2, 2) * input.take<double>();
+  const Vec3 size = take_vec3(input);
+  std::vector<Vec3> vertices(input.take_length(kVertex_bytes));
+  for (Vec3& vertex : vertices) vertex = pose.axes * take_vec3(input);
+  if (type == ShapeOnWire::kSphere) return planner::base::Body();
+  try {
+    planner::base::Body body{solid_of(type, size, pose, std::move(vertices)), 0.0, yaw_rate};
+    if (body.solid != nullptr) return body;
+  } catch (const std::invalid_argument&) {
+  }
+  return std::nullopt;
+}
+
+// How many shapes follow the tracks: none where the writer knows of none.
+std::uint32_t shapes_left(CdrInput& input) {
+  return input.has(sizeof(std::uint32_t)) ? input.take_length(kWireShape_bytes) : 0;
+}
+
 }  // namespace
 
 std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload) {
@@ -181,9 +230,18 @@ std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const st
     const StampedFrame header = take_header(input);
     message.frame_id = header.frame_id;
     message.stamp_unix_s = header.stamp_unix_s;
-    const std::uint32_t count = input.take_length(kWireTrack_bytes);
-    tracking::TrackValidator validator(message.tracks, count);
-    for (std::uint32_t i = 0; i < count; ++i) validator.add(take_track(input, header.frame_id == "ned"));
+    const bool ned = header.frame_id == "ned";
+    std::vector<Track> tracks(input.take_length(kWireTrack_bytes));
+    for (Track& track : tracks) track = take_track(input, ned);
+    const std::uint32_t shapes = shapes_left(input);
+    if (shapes != 0 && shapes != tracks.size()) return false;
+    const Eigen::Matrix3d to_enu = ned ? frames::enu_from_ned_axes() : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+    tracking::TrackValidator validator(message.tracks, tracks.size());
+    for (Track& track : tracks) {
+      const std::optional<planner::base::Body> body = shapes == 0 ? planner::base::Body() : take_body(input, to_enu);
+      if (body) track.body = *body;
+      validator.add(track, body ? nullptr : "shape");
+    }
     message.why = validator.why();
     return true;
   });

@@ -2,6 +2,7 @@
 // Messages of obstacle tracks out of DDS payloads: ours and Autoware's. No DDS here: pure functions of bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,8 +11,13 @@
 
 namespace jink::bridge::cdr {
 
-/// Decodes a payload (encapsulation and CDR); nothing where it is no ObstacleTracks. Tracks in the frame `ned` come out
-/// in ENU. Pure.
+/// What an ObstacleShape is; ObstacleShape.msg says what its numbers are.
+enum class ShapeOnWire : std::uint8_t { kSphere = 0, kBox = 1, kCylinder = 2, kCapsule = 3, kHull = 4 };
+inline constexpr std::size_t kMostVertices = 256;  ///< of a hull
+
+/// Decodes a payload (encapsulation and CDR); nothing where it is no ObstacleTracks, or one with shapes for some of its
+/// tracks only. Tracks in the frame `ned` come out in ENU. Where the payload ends with its tracks, or has no shapes,
+/// all are spheres. A track whose shape is none, or reaches out of its sphere, is left out. Pure.
 [[nodiscard]] std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const std::uint8_t> payload);
 
 /// Decodes a payload (encapsulation and CDR); nothing where it is no TrackedObjects. Pure.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/dds/tracks.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -12,6 +14,7 @@
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/frames/conversions.hpp"
 #include "bridge/tracking/track_inbox.hpp"
+#include "planner/base/solid.hpp"
 
 namespace jink::bridge::dds {
 
@@ -24,6 +27,42 @@ void to_wire(const Vec3& v, Wire& wire) {
   wire.x(v.x());
   wire.y(v.y());
   wire.z(v.z());
+}
+
+/// A solid as it is turned now. A hull of too many vertices, and a prism that is neither box, cylinder nor capsule, go
+/// as their spheres.
+void to_wire(const planner::base::Body& body, jink_msgs::msg::dds_::ObstacleShape_& wire) {
+  wire = {};
+  if (body.solid == nullptr || body.solid->vertices().size() > cdr::kMostVertices) return;
+  const planner::base::Solid& solid = *body.solid;
+  const Eigen::Matrix3d yaw = Eigen::AngleAxisd(body.yaw, Vec3::UnitZ()).toRotationMatrix();
+  const Eigen::Quaterniond orientation(Eigen::Matrix3d(solid.is_hull() ? yaw : yaw * solid.pose().axes));
+  const bool is_round = solid.half().head<2>().isZero(0.0);
+  Vec3 size = 2.0 * solid.half();
+  cdr::ShapeOnWire type = cdr::ShapeOnWire::kSphere;
+  if (solid.is_hull()) {
+    type = cdr::ShapeOnWire::kHull;
+    for (const Vec3& vertex : solid.vertices()) {
+      wire.vertices().emplace_back();
+      to_wire(vertex, wire.vertices().back());
+    }
+  } else if (solid.corner() == 0.0 && solid.rounding() == 0.0) {
+    type = cdr::ShapeOnWire::kBox;
+  } else if (is_round && solid.rounding() == 0.0) {
+    type = cdr::ShapeOnWire::kCylinder;
+    size.x() = size.y() = 2.0 * solid.corner();
+  } else if (is_round && solid.corner() == 0.0) {
+    type = cdr::ShapeOnWire::kCapsule;
+    size += Vec3::Constant(2.0 * solid.rounding());
+  }
+  wire.type(static_cast<std::uint8_t>(type));
+  to_wire(yaw * solid.pose().center, wire.center());
+  wire.orientation().x(orientation.x());
+  wire.orientation().y(orientation.y());
+  wire.orientation().z(orientation.z());
+  wire.orientation().w(orientation.w());
+  wire.yaw_rate(body.yaw_rate);
+  to_wire(size, wire.size());
 }
 
 }  // namespace
@@ -178,6 +217,10 @@ class DdsTrackWriter::Impl {
       wire.position_sigma(tracks[i].position_sigma);
       wire.velocity_sigma(tracks[i].velocity_sigma);
     }
+    const bool shapes =
+        std::any_of(tracks.begin(), tracks.end(), [](const Track& track) { return track.body.solid != nullptr; });
+    message_.shapes().resize(shapes ? tracks.size() : 0);
+    for (std::size_t i = 0; i < message_.shapes().size(); ++i) to_wire(tracks[i].body, message_.shapes()[i]);
     return writer_.write_message(message_);
   }
 

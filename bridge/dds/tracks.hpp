@@ -89,8 +89,9 @@ class DdsTrackWriter {
   DdsTrackWriter(const DdsTrackWriter&) = delete;
   DdsTrackWriter& operator=(const DdsTrackWriter&) = delete;
 
-  /// Sends one message with all of `tracks`, as they are: in the frame that `frame_id` names, unchecked. `stamp_unix_s`
-  /// is system time, seconds since 1970. False when Fast DDS does not take it. With no reader there it goes nowhere.
+  /// Sends one message with all of `tracks`, as they are: in the frame that `frame_id` names, unchecked. Their bodies
+  /// go as shapes where they are a box, cylinder, capsule or hull of at most cdr::kMostVertices. `stamp_unix_s` is
+  /// system time, seconds since 1970. False when Fast DDS does not take it. With no reader there it goes nowhere.
   [[nodiscard]] bool publish(std::span<const planner::base::Track> tracks, double stamp_unix_s,
                              const std::string& frame_id = "map");
   /// Readers matched now.

@@ -6,6 +6,7 @@
 
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/tracking/track_table.hpp"
+#include "planner/geometry/validity.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -18,6 +19,7 @@ void check(const std::vector<jink::planner::base::Track>& tracks) {
     jink::fuzz::require(finite, "a track that is not finite");
     jink::fuzz::require(track.radius > 0.0 && track.radius <= jink::bridge::tracking::TrackLimits::kRadius,
                         "an absurd radius");
+    jink::fuzz::require(jink::planner::geometry::is_valid(track.body, track.radius), "an absurd body");
     jink::fuzz::require(track.age >= 0.0, "a track from the future");
   }
 }
