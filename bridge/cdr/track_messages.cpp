@@ -5,10 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <system_error>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -46,11 +50,15 @@ Track take_track(CdrInput& input, bool ned) {
   return track;
 }
 
+constexpr const char* kNoShape = "shape is not finite or out of range";
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // At the least, without classification and footprint: what a stated number of objects is checked against.
 constexpr std::size_t kObject_bytes = 16 + 4 + 4 + (7 + 36 + 6 + 36 + 6 + 36) * 8 + 2 + 1 + 4 + 3 * 8;
 constexpr std::size_t kClassification_bytes = 5;
 constexpr std::size_t kPoint32_bytes = 12;
+// Likewise, with empty texts.
+constexpr std::size_t kDetection_bytes = 8 + 4 + 4 + (7 + 3) * 8 + 4;
+constexpr std::size_t kResult_bytes = 4 + 8 + (7 + 36) * 8;
 
 // A variance (m^2, m^2/s^2) beyond which a writer says that it knows nothing in that direction.
 constexpr double kNoInformation = 1e4;
@@ -217,6 +225,51 @@ std::optional<planner::base::Body> take_body(CdrInput& input, const Eigen::Matri
   return std::nullopt;
 }
 
+/// A detection as a track, and what is wrong with it: null for nothing yet.
+struct Detection {
+  Track track;
+  const char* bad = nullptr;
+};
+
+std::uint64_t id_of(const std::string& text) {
+  std::uint64_t number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (read.ec == std::errc() && read.ptr == text.data() + text.size()) return number;
+  return fnv1a({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});  // NOLINT: a text's bytes
+}
+
+// In the order of the IDL. `frame` is the message's; `named` holds the ids before.
+Detection take_detection(CdrInput& input, const std::string& frame, std::unordered_set<std::uint64_t>& named) {
+  Detection detection;
+  Track& track = detection.track;
+  const std::string own_frame = take_header(input).frame_id;
+  const std::uint32_t results = input.take_length(kResult_bytes);
+  for (std::uint32_t i = 0; i < results; ++i) {
+    input.take<std::string>();  // class_id
+    input.take<double>();       // score
+    for (int k = 0; k < 7; ++k) input.take<double>();
+    const double sigma = take_sigma(input);
+    if (i == 0) track.position_sigma = sigma;
+  }
+  if (track.position_sigma == 0.0) track.position_sigma = kDetectionSigma;
+  track.position = take_vec3(input);
+  const Solid::Pose pose{Vec3::Zero(), rotation(take_quaternion(input), false)};
+  const Vec3 size = take_vec3(input);
+  track.radius = 0.5 * size.norm();
+  const auto id = input.take<std::string>();
+  track.id = id_of(id);
+  if (id.empty() || !named.insert(track.id).second) {
+    detection.bad = "id is empty or that of another";
+  } else if (!own_frame.empty() && own_frame != frame) {
+    detection.bad = "frame_id is not that of the message";
+  } else if (!pose.axes.allFinite() || !size.allFinite() || size.minCoeff() < 0.0) {
+    detection.bad = kNoShape;
+  } else {
+    track.body.solid = Solid::box(size, pose);
+  }
+  return detection;
+}
+
 // How many shapes follow the tracks: none where the writer knows of none.
 std::uint32_t shapes_left(CdrInput& input) {
   return input.has(sizeof(std::uint32_t)) ? input.take_length(kWireShape_bytes) : 0;
@@ -240,7 +293,27 @@ std::optional<tracking::DecodedTracks> decode_obstacle_tracks(std::span<const st
     for (Track& track : tracks) {
       const std::optional<planner::base::Body> body = shapes == 0 ? planner::base::Body() : take_body(input, to_enu);
       if (body) track.body = *body;
-      validator.add(track, body ? nullptr : "shape");
+      validator.add(track, body ? nullptr : kNoShape);
+    }
+    message.why = validator.why();
+    return true;
+  });
+  return whole ? std::optional(std::move(message)) : std::nullopt;
+}
+
+std::optional<tracking::DecodedTracks> decode_detections(std::span<const std::uint8_t> payload) {
+  tracking::DecodedTracks message;
+  message.tracks.positions_only = true;
+  const bool whole = decode(payload, [&](CdrInput& input) {
+    const StampedFrame header = take_header(input);
+    message.frame_id = header.frame_id;
+    message.stamp_unix_s = header.stamp_unix_s;
+    const std::uint32_t count = input.take_length(kDetection_bytes);
+    tracking::TrackValidator validator(message.tracks, count);
+    std::unordered_set<std::uint64_t> named;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Detection detection = take_detection(input, header.frame_id, named);
+      validator.add(detection.track, detection.bad);
     }
     message.why = validator.why();
     return true;

@@ -38,8 +38,8 @@ TrackValidator::TrackValidator(TrackMessage& message, std::size_t stated) : mess
 void TrackValidator::add(const planner::base::Track& track, const char* bad) {
   if (++added_ > TrackLimits::kTracksPerMessage) {
     ++message_.dropped;
-  } else if (const char* what = bad != nullptr ? bad : refusal(track); what != nullptr) {
-    bad_what_ = what;
+  } else if (const char* field = refusal(track); bad != nullptr || field != nullptr) {
+    bad_what_ = bad != nullptr ? bad : std::string(field) + " is not finite or out of range";
     bad_id_ = track.id;
     ++message_.dropped;
     if (track.position.allFinite() && track.position.norm() > TrackLimits::kPosition) ++message_.far;
@@ -53,8 +53,8 @@ std::string TrackValidator::why() const {
     return "a message of " + std::to_string(stated_) + " tracks; at most " +
            std::to_string(TrackLimits::kTracksPerMessage) + " are taken";
   }
-  if (bad_what_ == nullptr) return {};
-  return "track " + std::to_string(bad_id_) + ": " + bad_what_ + " is not finite or out of range";
+  if (bad_what_.empty()) return {};
+  return "track " + std::to_string(bad_id_) + ": " + bad_what_;
 }
 
 void TrackInbox::put(TrackMessage message, const std::string& why) {
