@@ -11,7 +11,7 @@ if(NOT FASTDDSGEN)
 endif()
 
 # One run for all files: each that includes another writes that one's outputs again.
-set(_idl_names RosCommon ObstacleTracks Intents TrackedObjects Px4)
+set(_idl_names RosCommon ObstacleTracks Intents TrackedObjects Detections Px4)
 set(_idl_dir ${PROJECT_BINARY_DIR}/idl)
 file(MAKE_DIRECTORY ${_idl_dir})  # fastddsgen does not make it
 list(TRANSFORM _idl_names PREPEND ${PROJECT_SOURCE_DIR}/bridge/dds/idl/ OUTPUT_VARIABLE _idl_files)

@@ -96,10 +96,10 @@ void read_heights(const Map& map, Mission& mission) {
 }
 
 TrackSources read_sources(const Value& value) {
-  static constexpr std::array<std::string_view, 3> kNames = {"jink", "autoware", "adsb"};
+  static constexpr std::array<std::string_view, 4> kNames = {"jink", "autoware", "vision", "adsb"};
   std::array<bool, kNames.size()> named{};
   for (const Value& name : value.list(1, kNames.size())) named[name.choice(kNames)] = true;
-  return {named[0], named[1], named[2]};
+  return {named[0], named[1], named[2], named[3]};
 }
 
 std::uint32_t read_icao_address(const Value& value) {
@@ -122,19 +122,20 @@ std::string read_namespace(const Value& value) {
   return text;
 }
 
-constexpr std::array<std::string_view, 2> kTrackTopics = {"jink", "autoware"};
+constexpr std::array<std::string_view, kTrackTopics.size()> kTopicNames = {"jink", "autoware", "vision"};
 
 // By topic, the names of DDS participants. Without `sources` of its own the mission reads the topics that have some.
 void read_writers(const Value& value, bool sources_given, TrackPolicy& tracks) {
   constexpr std::size_t kMostWriters = 100;
-  const Map map(value, {kTrackTopics.begin(), kTrackTopics.end()});
-  const std::array<bool*, 2> sources = {&tracks.sources.jink, &tracks.sources.autoware};
-  for (std::size_t i = 0; i < kTrackTopics.size(); ++i) {
-    const auto names = map.find(kTrackTopics[i]);
+  const Map map(value, {kTopicNames.begin(), kTopicNames.end()});
+  const std::array<bool*, kTopicNames.size()> sources = {&tracks.sources.jink, &tracks.sources.autoware,
+                                                         &tracks.sources.vision};
+  for (std::size_t i = 0; i < kTopicNames.size(); ++i) {
+    const auto names = map.find(kTopicNames[i]);
     if (!sources_given) *sources[i] = names.has_value();
     if (names.has_value() != *sources[i]) {
       value.fail("is not as tracks.sources, which " + std::string(names ? "leave out '" : "have '") +
-                 std::string(kTrackTopics[i]) + "'");
+                 std::string(kTopicNames[i]) + "'");
     }
     if (!names) continue;
     for (const Value& name : names->list(1, kMostWriters)) {
@@ -177,9 +178,9 @@ TrackPolicy read_tracks(const Value& value) {
     if (!tracks.required) map.at("required", "").fail("is at odds with writers, each of which is needed");
   }
   if (const auto origins = map.find("origins")) {
-    const Map topics(*origins, {kTrackTopics.begin(), kTrackTopics.end()});
-    for (std::size_t i = 0; i < kTrackTopics.size(); ++i) {
-      if (const auto origin = topics.find(kTrackTopics[i])) tracks.origins[i] = read_origin(*origin);
+    const Map topics(*origins, {kTopicNames.begin(), kTopicNames.end()});
+    for (std::size_t i = 0; i < kTopicNames.size(); ++i) {
+      if (const auto origin = topics.find(kTopicNames[i])) tracks.origins[i] = read_origin(*origin);
     }
   }
   return tracks;

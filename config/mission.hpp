@@ -24,11 +24,21 @@ enum class Transport { kMavlink, kDds };
 /// What waypoints and geofence are above.
 enum class Heights { kGround, kOrigin, kSea };
 
+/// A source of tracks on DDS; whose index is that in TrackPolicy::origins.
+enum class TrackTopic { kJink, kAutoware, kVision };
+inline constexpr std::array<TrackTopic, 3> kTrackTopics = {TrackTopic::kJink, TrackTopic::kAutoware,
+                                                           TrackTopic::kVision};
+
 /// Who may tell of obstacles.
 struct TrackSources {
   bool jink = true;      ///< jink_msgs/ObstacleTracks on DDS
   bool autoware = true;  ///< autoware_perception_msgs/TrackedObjects on DDS
+  bool vision = true;    ///< vision_msgs/Detection3DArray on DDS
   bool adsb = true;      ///< ADSB_VEHICLE on the MAVLink connection
+
+  [[nodiscard]] bool has(TrackTopic topic) const {
+    return topic == TrackTopic::kJink ? jink : topic == TrackTopic::kAutoware ? autoware : vision;
+  }
 };
 
 /// What a vehicle is left in when a flight is ended: each is a mode of the autopilot, in which it avoids nothing.
@@ -51,9 +61,6 @@ struct Endings {
   bool hover_until_empty = false;   ///< HOLD with a critical battery
 };
 
-/// A source of tracks on DDS; whose index is that in TrackPolicy::origins.
-enum class TrackTopic { kJink, kAutoware };
-
 /// A DDS participant whose tracks of a topic are taken, and needed.
 struct TrackWriter {
   TrackTopic topic = TrackTopic::kJink;
@@ -73,9 +80,10 @@ struct TrackPolicy {
   double coast_s = 1.0;    ///< how long a track that is no longer reported is predicted on
   SensedFrom sensed_from = SensedFrom::kWorld;
   TrackSources sources;
-  std::string name_space;                                ///< before the topics: "uav_1" means rt/uav_1/jink/...
-  std::vector<TrackWriter> writers;                      ///< each is needed, and others are not heard; empty: any is
-  std::array<std::optional<GeodeticOrigin>, 2> origins;  ///< of the topics' frames; none: the autopilot's local origin
+  std::string name_space;            ///< before the topics: "uav_1" means rt/uav_1/jink/...
+  std::vector<TrackWriter> writers;  ///< each is needed, and others are not heard; empty: any is
+  /// Of the topics' frames; none: the autopilot's local origin.
+  std::array<std::optional<GeodeticOrigin>, kTrackTopics.size()> origins;
 };
 
 struct Mission {

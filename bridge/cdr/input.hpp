@@ -31,6 +31,8 @@ class CdrInput {
   /// The length of a sequence whose elements take at least `element_bytes` each; one that the rest of the payload
   /// cannot hold is thrown out here, before anything is allocated for it.
   std::uint32_t take_length(std::size_t element_bytes);
+  /// Whether so many bytes are left: less is what pads a payload.
+  [[nodiscard]] bool has(std::size_t bytes) const { return size_ - cdr_.getSerializedDataLength() >= bytes; }
   [[nodiscard]] eprosima::fastcdr::Cdr& cdr() { return cdr_; }
 
  private:

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/dds/tracks.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -12,6 +15,7 @@
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/frames/conversions.hpp"
 #include "bridge/tracking/track_inbox.hpp"
+#include "planner/base/solid.hpp"
 
 namespace jink::bridge::dds {
 
@@ -26,6 +30,42 @@ void to_wire(const Vec3& v, Wire& wire) {
   wire.z(v.z());
 }
 
+/// A solid as it is turned now. A hull of too many vertices, and a prism that is neither box, cylinder nor capsule, go
+/// as their spheres.
+void to_wire(const planner::base::Body& body, jink_msgs::msg::dds_::ObstacleShape_& wire) {
+  wire = {};
+  if (body.solid == nullptr || body.solid->vertices().size() > cdr::kMostVertices) return;
+  const planner::base::Solid& solid = *body.solid;
+  const Eigen::Matrix3d yaw = Eigen::AngleAxisd(body.yaw, Vec3::UnitZ()).toRotationMatrix();
+  const Eigen::Quaterniond orientation(Eigen::Matrix3d(solid.is_hull() ? yaw : yaw * solid.pose().axes));
+  const bool is_round = solid.half().head<2>().isZero(0.0);
+  Vec3 size = 2.0 * solid.half();
+  cdr::ShapeOnWire type = cdr::ShapeOnWire::kSphere;
+  if (solid.is_hull()) {
+    type = cdr::ShapeOnWire::kHull;
+    for (const Vec3& vertex : solid.vertices()) {
+      wire.vertices().emplace_back();
+      to_wire(vertex, wire.vertices().back());
+    }
+  } else if (solid.corner() == 0.0 && solid.rounding() == 0.0) {
+    type = cdr::ShapeOnWire::kBox;
+  } else if (is_round && solid.rounding() == 0.0) {
+    type = cdr::ShapeOnWire::kCylinder;
+    size.x() = size.y() = 2.0 * solid.corner();
+  } else if (is_round && solid.corner() == 0.0) {
+    type = cdr::ShapeOnWire::kCapsule;
+    size += Vec3::Constant(2.0 * solid.rounding());
+  }
+  wire.type(static_cast<std::uint8_t>(type));
+  to_wire(yaw * solid.pose().center, wire.center());
+  wire.orientation().x(orientation.x());
+  wire.orientation().y(orientation.y());
+  wire.orientation().z(orientation.z());
+  wire.orientation().w(orientation.w());
+  wire.yaw_rate(body.yaw_rate);
+  to_wire(size, wire.size());
+}
+
 }  // namespace
 
 class DdsTrackReader::Impl {
@@ -34,7 +74,7 @@ class DdsTrackReader::Impl {
       : clock_(clock),
         options_(options),
         names_(node.impl().names()),
-        topic_(topic_of(options.format)),
+        topic_(track_topic_info(options.format)),
         reader_(node, track_topic(options.format, options.name_space), topic_.type,
                 [this](const Payload& payload, const SampleWriter& writer) { accept(payload, writer); }) {}
 
@@ -51,28 +91,6 @@ class DdsTrackReader::Impl {
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
  private:
-  /// What a topic's payloads are.
-  struct Topic {
-    const char* type;
-    /// Nothing where a payload is not of the type.
-    std::optional<tracking::DecodedTracks> (*decode)(std::span<const std::uint8_t> payload);
-    /// Why a message in this frame is refused; empty: it is taken.
-    std::string (*refuse_frame)(const std::string& frame_id);
-  };
-
-  static Topic topic_of(TrackFormat format) {
-    if (format == TrackFormat::kAutoware) {
-      return {kAutowareType, cdr::decode_tracked_objects, [](const std::string& frame_id) {
-                if (frame_id == "map") return std::string();
-                return "TrackedObjects: frame_id '" + cdr::printable(frame_id) + "' is not 'map'";
-              }};
-    }
-    return {kTracksType, cdr::decode_obstacle_tracks, [](const std::string& frame_id) {
-              if (frame_id == "map" || frame_id == "ned") return std::string();
-              return "frame_id '" + cdr::printable(frame_id) + "' is neither 'map' nor 'ned'";
-            }};
-  }
-
   // On Fast DDS's thread: the payload as a message into the inbox, or refused.
   void accept(const Payload& payload, const SampleWriter& writer) {
     const double received = clock_.now();
@@ -89,7 +107,10 @@ class DdsTrackReader::Impl {
       ++malformed_;
       return;
     }
-    if (const std::string why = topic_.refuse_frame(message->frame_id); !why.empty()) return inbox_.refuse(why);
+    if (const std::string& frame = message->frame_id; frame != "map" && !(topic_.ned && frame == "ned")) {
+      const std::string found = "frame_id '" + cdr::printable(frame) + "' is ";
+      return inbox_.refuse(topic_.ned ? found + "neither 'map' nor 'ned'" : topic_.name + (": " + found) + "not 'map'");
+    }
     if (options_.origin && !place(message->tracks))
       return inbox_.refuse("tracks with an origin of their own: the autopilot's is not known yet");
     message->tracks.named = named;
@@ -120,7 +141,7 @@ class DdsTrackReader::Impl {
   const base::Clock& clock_;
   const TrackReaderOptions options_;
   const ParticipantNames& names_;
-  const Topic topic_;
+  const TrackTopicInfo& topic_;
   std::optional<frames::Geodetic> local_origin_;
   Eigen::Isometry3d to_local_ = Eigen::Isometry3d::Identity();
   std::atomic<std::uint64_t> malformed_ = 0;
@@ -128,8 +149,16 @@ class DdsTrackReader::Impl {
   PayloadReader reader_;  // last: its destruction ends the callbacks while all else still stands
 };
 
+const TrackTopicInfo& track_topic_info(TrackFormat format) {
+  static constexpr std::array<TrackTopicInfo, 3> kTopics{
+      {{kTracksTopic, kTracksType, "", true, cdr::decode_obstacle_tracks},
+       {kAutowareTopic, kAutowareType, "TrackedObjects", false, cdr::decode_tracked_objects},
+       {kVisionTopic, kVisionType, "Detection3DArray", false, cdr::decode_detections}}};
+  return kTopics.at(static_cast<std::size_t>(format));
+}
+
 std::string track_topic(TrackFormat format, const std::string& name_space) {
-  const std::string topic = format == TrackFormat::kAutoware ? kAutowareTopic : kTracksTopic;
+  const std::string topic = track_topic_info(format).topic;
   return name_space.empty() ? topic : "rt/" + name_space + topic.substr(2);
 }
 
@@ -178,6 +207,10 @@ class DdsTrackWriter::Impl {
       wire.position_sigma(tracks[i].position_sigma);
       wire.velocity_sigma(tracks[i].velocity_sigma);
     }
+    const bool shapes =
+        std::any_of(tracks.begin(), tracks.end(), [](const Track& track) { return track.body.solid != nullptr; });
+    message_.shapes().resize(shapes ? tracks.size() : 0);
+    for (std::size_t i = 0; i < message_.shapes().size(); ++i) to_wire(tracks[i].body, message_.shapes()[i]);
     return writer_.write_message(message_);
   }
 

@@ -26,10 +26,24 @@ inline constexpr const char* kTracksType = "jink_msgs::msg::dds_::ObstacleTracks
 /// ROS 2: /perception/object_recognition/tracking/objects
 inline constexpr const char* kAutowareTopic = "rt/perception/object_recognition/tracking/objects";
 inline constexpr const char* kAutowareType = "autoware_perception_msgs::msg::dds_::TrackedObjects_";
+/// ROS 2: /jink/detections
+inline constexpr const char* kVisionTopic = "rt/jink/detections";
+inline constexpr const char* kVisionType = "vision_msgs::msg::dds_::Detection3DArray_";
 
 /// Who makes the tracks: a program of jink's topic, in the frame `map` (ENU about the autopilot's local origin) or
-/// `ned`; or Autoware's perception, in `map` alone.
-enum class TrackFormat { kJink, kAutoware };
+/// `ned`; or Autoware's perception, or a detector in space, in `map` alone. In the order of config::TrackTopic.
+enum class TrackFormat { kJink, kAutoware, kVision };
+
+/// What a topic of tracks carries.
+struct TrackTopicInfo {
+  const char* topic;  ///< without a namespace
+  const char* type;
+  const char* name;  ///< of the type, in words; empty: jink's own
+  bool ned;          ///< whether the frame `ned` is known beside `map`
+  /// Nothing where a payload is not of the type.
+  std::optional<tracking::DecodedTracks> (*decode)(std::span<const std::uint8_t> payload);
+};
+[[nodiscard]] const TrackTopicInfo& track_topic_info(TrackFormat format);
 
 /// Which topic is read, whose messages of it, and where their frame is.
 struct TrackReaderOptions {
@@ -89,8 +103,9 @@ class DdsTrackWriter {
   DdsTrackWriter(const DdsTrackWriter&) = delete;
   DdsTrackWriter& operator=(const DdsTrackWriter&) = delete;
 
-  /// Sends one message with all of `tracks`, as they are: in the frame that `frame_id` names, unchecked. `stamp_unix_s`
-  /// is system time, seconds since 1970. False when Fast DDS does not take it. With no reader there it goes nowhere.
+  /// Sends one message with all of `tracks`, as they are: in the frame that `frame_id` names, unchecked. Their bodies
+  /// go as shapes where they are a box, cylinder, capsule or hull of at most cdr::kMostVertices. `stamp_unix_s` is
+  /// system time, seconds since 1970. False when Fast DDS does not take it. With no reader there it goes nowhere.
   [[nodiscard]] bool publish(std::span<const planner::base::Track> tracks, double stamp_unix_s,
                              const std::string& frame_id = "map");
   /// Readers matched now.

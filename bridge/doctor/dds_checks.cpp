@@ -106,10 +106,10 @@ class Probe {
   dds::PayloadReader reader_;  // last: its destruction ends the callbacks
 };
 
-Verdict judge_tracks(std::optional<tracking::DecodedTracks> message, const config::Mission& mission,
+Verdict judge_tracks(std::optional<tracking::DecodedTracks> message, bool ned, const config::Mission& mission,
                      config::TrackTopic topic) {
   if (!message) return {0.0, "payload of another layout"};
-  const bool known = message->frame_id == "map" || (topic == config::TrackTopic::kJink && message->frame_id == "ned");
+  const bool known = message->frame_id == "map" || (ned && message->frame_id == "ned");
   if (!known) return {message->stamp_unix_s, "frame_id '" + cdr::printable(message->frame_id) + "'"};
   message->tracks.placed = mission.tracks.origins.at(static_cast<std::size_t>(topic)).has_value();
   if (tracking::elsewhere(message->tracks, mission.geofence))
@@ -354,17 +354,13 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
     probes.push_back(std::make_unique<Probe>(inspector.node(), topic, type, std::move(judge)));
   };
   const auto px4_name = [&](const char* name) { return dds::px4_topic(mission.dds_namespace, name); };
-  const std::string& name_space = mission.tracks.name_space;
-  if (mission.tracks.sources.jink) {
-    add(tracks, dds::track_topic(dds::TrackFormat::kJink, name_space), dds::kTracksType,
-        [&mission](const dds::Payload& payload) {
-          return judge_tracks(cdr::decode_obstacle_tracks(payload), mission, config::TrackTopic::kJink);
-        });
-  }
-  if (mission.tracks.sources.autoware) {
-    add(tracks, dds::track_topic(dds::TrackFormat::kAutoware, name_space), dds::kAutowareType,
-        [&mission](const dds::Payload& payload) {
-          return judge_tracks(cdr::decode_tracked_objects(payload), mission, config::TrackTopic::kAutoware);
+  for (const config::TrackTopic topic : config::kTrackTopics) {
+    if (!mission.tracks.sources.has(topic)) continue;
+    const auto format = static_cast<dds::TrackFormat>(topic);
+    const dds::TrackTopicInfo& info = dds::track_topic_info(format);
+    add(tracks, dds::track_topic(format, mission.tracks.name_space), info.type,
+        [&mission, &info, topic](const dds::Payload& payload) {
+          return judge_tracks(info.decode(payload), info.ned, mission, topic);
         });
   }
   if (mission.state == config::Transport::kDds) {
@@ -394,10 +390,10 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
   }
   if (!mission.tracks.writers.empty()) {
     std::size_t probe = 0;
-    if (mission.tracks.sources.jink)
-      inspector.name_checks(mission.tracks.writers, config::TrackTopic::kJink, *tracks[probe++], checks);
-    if (mission.tracks.sources.autoware)
-      inspector.name_checks(mission.tracks.writers, config::TrackTopic::kAutoware, *tracks[probe], checks);
+    for (const config::TrackTopic topic : config::kTrackTopics) {
+      if (mission.tracks.sources.has(topic))
+        inspector.name_checks(mission.tracks.writers, topic, *tracks[probe++], checks);
+    }
   }
   add_alternatives(checks, levels(positions));
   std::size_t writers = 0;

@@ -12,6 +12,12 @@ Vec3 enu_from_ned(const Vec3& ned) {
   return {ned.y(), ned.x(), -ned.z()};
 }
 
+Eigen::Matrix3d enu_from_ned_axes() {
+  Eigen::Matrix3d axes;
+  axes << 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
+  return axes;
+}
+
 Vec3 ned_from_enu(const Vec3& enu) {
   return {enu.y(), enu.x(), -enu.z()};
 }

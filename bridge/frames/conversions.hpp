@@ -14,6 +14,8 @@ namespace jink::bridge::frames {
 
 /// (north, east, down) to (east, north, up). Its own inverse as a map of numbers: both names exist to be read.
 [[nodiscard]] Vec3 enu_from_ned(const Vec3& ned);
+/// The same as a rotation.
+[[nodiscard]] Eigen::Matrix3d enu_from_ned_axes();
 /// (east, north, up) to (north, east, down).
 [[nodiscard]] Vec3 ned_from_enu(const Vec3& enu);
 

@@ -16,7 +16,7 @@ const char* refusal(const planner::base::Track& t) {
   if (!(t.velocity.norm() <= L::kVelocity)) return "velocity";
   if (!(t.acceleration.norm() <= L::kAcceleration)) return "acceleration";
   if (!(t.radius > 0.0 && t.radius <= L::kRadius)) return "radius";
-  if (!planner::geometry::is_valid(t.body, t.radius)) return "body";
+  if (!planner::geometry::is_valid(t.body, t.radius)) return "shape";
   if (!(t.position_sigma >= 0.0 && t.position_sigma <= L::kSigma)) return "position_sigma";
   if (!(t.velocity_sigma >= 0.0 && t.velocity_sigma <= L::kSigma)) return "velocity_sigma";
   return nullptr;
@@ -35,11 +35,11 @@ TrackValidator::TrackValidator(TrackMessage& message, std::size_t stated) : mess
   message_.tracks.reserve(std::min(stated, TrackLimits::kTracksPerMessage));
 }
 
-void TrackValidator::add(const planner::base::Track& track) {
+void TrackValidator::add(const planner::base::Track& track, const char* bad) {
   if (++added_ > TrackLimits::kTracksPerMessage) {
     ++message_.dropped;
-  } else if (const char* bad = refusal(track); bad != nullptr) {
-    bad_what_ = bad;
+  } else if (const char* field = refusal(track); bad != nullptr || field != nullptr) {
+    bad_what_ = bad != nullptr ? bad : std::string(field) + " is not finite or out of range";
     bad_id_ = track.id;
     ++message_.dropped;
     if (track.position.allFinite() && track.position.norm() > TrackLimits::kPosition) ++message_.far;
@@ -53,8 +53,8 @@ std::string TrackValidator::why() const {
     return "a message of " + std::to_string(stated_) + " tracks; at most " +
            std::to_string(TrackLimits::kTracksPerMessage) + " are taken";
   }
-  if (bad_what_ == nullptr) return {};
-  return "track " + std::to_string(bad_id_) + ": " + bad_what_ + " is not finite or out of range";
+  if (bad_what_.empty()) return {};
+  return "track " + std::to_string(bad_id_) + ": " + bad_what_;
 }
 
 void TrackInbox::put(TrackMessage message, const std::string& why) {

@@ -41,7 +41,8 @@ class TrackValidator {
   /// `stated`: how many tracks the message has. `message` must outlive the validator.
   TrackValidator(TrackMessage& message, std::size_t stated);
 
-  void add(const planner::base::Track& track);
+  /// `bad`: what is wrong with it already, in words; null: nothing yet.
+  void add(const planner::base::Track& track, const char* bad = nullptr);
   /// Why the last of those left out was; empty when none was.
   [[nodiscard]] std::string why() const;
 
@@ -49,7 +50,7 @@ class TrackValidator {
   TrackMessage& message_;
   std::size_t stated_;
   std::size_t added_ = 0;
-  const char* bad_what_ = nullptr;
+  std::string bad_what_;
   std::uint64_t bad_id_ = 0;
 };
 

@@ -22,6 +22,7 @@ struct TrackMessage : base::Reception<base::Frame::kLocal> {
   std::uint32_t far = 0;             ///< of these, those farther than TrackLimits::kPosition
   bool placed = false;               ///< its frame's place is known: it has an origin, or is the vehicle's
   std::vector<Aircraft> aircraft{};  ///< those of them with people on board, of a source that knows
+  bool positions_only = false;       ///< its writer tells no velocities: the table finds them
   std::size_t named = 0;             ///< i + 1: of the writer i that the mission names; 0: it names none
   bool sends_when_empty =
       true;  ///< its writer speaks also when it sees nothing: as long as it speaks, somebody is watching

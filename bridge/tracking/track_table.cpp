@@ -61,12 +61,30 @@ void TrackTable::remember(const TrackMessage& message) {
   for (const planner::base::Track& track : message.tracks) last.push_back({track.id, track.position});
 }
 
+TrackMessage TrackTable::with_velocities(TrackMessage message, double measured) const {
+  for (planner::base::Track& track : message.tracks) {
+    const auto known = entries_.find({message.writer, track.id});
+    if (known != entries_.end()) {
+      known->second.history.set_velocity(measured, track);
+    } else {
+      prediction::PositionHistory().set_velocity(measured, track);
+    }
+  }
+  return message;
+}
+
 void TrackTable::ingest(const TrackMessage& message) {
   const std::optional<double> measured = stamp_of(message);
   if (!measured) {
     ++counts_.late_messages;
-    return;
+  } else if (message.positions_only) {
+    ingest(with_velocities(message, *measured), *measured);
+  } else {
+    ingest(message, *measured);
   }
+}
+
+void TrackTable::ingest(const TrackMessage& message, double measured) {
   if (is_repetition(message)) {
     ++counts_.frozen_messages;
     return;
@@ -95,10 +113,11 @@ void TrackTable::ingest(const TrackMessage& message) {
       known = entries_.emplace(key, Entry{}).first;
     }
     Entry& entry = known->second;
-    if (*measured < entry.track.stamp) continue;  // overtaken on the way
-    take(entry, {track, *measured, message.received});
+    if (measured < entry.track.stamp) continue;  // overtaken on the way
+    if (message.positions_only) entry.history.add(measured, track);
+    take(entry, {track, measured, message.received});
   }
-  learn(message, *measured);
+  learn(message, measured);
 }
 
 void TrackTable::take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured) {

@@ -13,6 +13,7 @@
 #include "bridge/prediction/imm_filter.hpp"
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/prediction/motion_learner.hpp"
+#include "bridge/prediction/position_history.hpp"
 #include "bridge/tracking/clock_offset.hpp"
 #include "bridge/tracking/track_source.hpp"
 #include "planner/base/types.hpp"
@@ -40,7 +41,8 @@ class TrackTable {
   /// ClockOffsetEstimator believes; a message that is too late for it is left out, as if it had not come.
   ///
   /// A message in which every track that should have moved stands where it stood in the one before, to the last bit, is
-  /// that message again whatever its stamp says, and is left out. O(tracks · log(all tracks)).
+  /// that message again whatever its stamp says, and is left out. Of a message of positions alone the velocities are
+  /// those of prediction::PositionHistory. O(tracks · log(all tracks)).
   void ingest(const TrackMessage& message);
 
   /// Finds tracks that are the vehicle itself, as a tracker reports them that sees it too: no larger than a few times
@@ -89,6 +91,7 @@ class TrackTable {
     base::Stamped<planner::base::Track, base::Frame::kLocal>
         track;                                      // as estimated; stamped when measured, received in the last message
     std::unique_ptr<prediction::ImmFilter> filter;  // of a track that is measured with noise
+    prediction::PositionHistory history;            // of a track without a velocity
     std::unique_ptr<prediction::MotionLearner> learned;  // of a track that is near enough
     std::optional<Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
@@ -109,6 +112,8 @@ class TrackTable {
   std::optional<double> stamp_of(const TrackMessage& message);
   [[nodiscard]] bool is_repetition(const TrackMessage& message) const;
   void remember(const TrackMessage& message);
+  [[nodiscard]] TrackMessage with_velocities(TrackMessage message, double measured) const;
+  void ingest(const TrackMessage& message, double measured);
   static void take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured);
   void learn(const TrackMessage& message, double t);
   void forget(double now);

@@ -107,7 +107,7 @@ TEST(LoadMission, FillsInWhatIsOptional) {
   EXPECT_EQ(m.state, Transport::kMavlink);
   EXPECT_EQ(m.setpoints, Transport::kMavlink);
   EXPECT_TRUE(m.intents);
-  EXPECT_TRUE(m.tracks.sources.jink && m.tracks.sources.autoware && m.tracks.sources.adsb);
+  EXPECT_TRUE(m.tracks.sources.jink && m.tracks.sources.autoware && m.tracks.sources.vision && m.tracks.sources.adsb);
 }
 
 TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
@@ -121,7 +121,7 @@ TEST(LoadMission, ReadsWhereStateComesFromAndWhoTellsOfObstacles) {
   EXPECT_EQ(m.state, Transport::kDds);
   EXPECT_EQ(m.setpoints, Transport::kDds);
   EXPECT_FALSE(m.intents);
-  EXPECT_FALSE(m.tracks.sources.jink || m.tracks.sources.autoware);
+  EXPECT_FALSE(m.tracks.sources.jink || m.tracks.sources.autoware || m.tracks.sources.vision);
   EXPECT_TRUE(m.tracks.sources.adsb);
   EXPECT_EQ(m.tracks.sensed_from, SensedFrom::kVehicle);
 }
@@ -140,8 +140,13 @@ TEST(LoadMission, ReadsWhoseTracksAreHeardAndWhereTheirFrameIs) {
   EXPECT_EQ(tracks.writers[1].topic, TrackTopic::kJink);
   EXPECT_EQ(tracks.writers[2].participant, "/perception");
   EXPECT_EQ(tracks.writers[2].topic, TrackTopic::kAutoware);
+  tracks = load("sources: [vision], writers: {vision: [camera]}, origins: {vision: [47.4, 8.5, 488]}");
+  EXPECT_TRUE(tracks.sources.vision);
+  EXPECT_FALSE(tracks.sources.adsb);
+  EXPECT_EQ(tracks.writers.at(0).topic, TrackTopic::kVision);
+  EXPECT_TRUE(tracks.origins[2]);
   tracks = load("writers: {jink: [front]}, origins: {jink: [47.4, 8.5, 488]}");
-  EXPECT_FALSE(tracks.sources.autoware);  // names nobody, so nobody's are read
+  EXPECT_FALSE(tracks.sources.autoware || tracks.sources.vision);  // names nobody, so nobody's are read
   EXPECT_TRUE(tracks.sources.jink && tracks.sources.adsb);
   EXPECT_FALSE(tracks.origins[1]);
   ASSERT_TRUE(tracks.origins[0]);
@@ -263,8 +268,9 @@ TEST(LoadMission, RefusesBadValues) {
       {"domain: 7", "domain: 7, namespace: /px4", 10, "dds.namespace", "/px4", "is not a namespace"},
       {"domain: 7", "domain: 7, namespace: \"px 4\"", 10, "dds.namespace", "px 4", "is not a namespace"},
       {"coast_s: 0.5", "sensed_from: mars", 11, "tracks.sensed_from", "mars", "is not one of world, vehicle"},
-      {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 3]"},
-      {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar", "is not one of jink, autoware, adsb"},
+      {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 4]"},
+      {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar",
+       "is not one of jink, autoware, vision, adsb"},
       {"time_limit: 120", "endings: {tracks: loiter}", 12, "endings.tracks", "loiter", "not one of hold, land, return"},
       {"time_limit: 120", "endings: {position: return}", 12, "endings.position", "return", "expected hold or land"},
       {"time_limit: 120", "endings: {battery: hold}", 12, "endings.battery", "hold", "accept: [hover_until_empty]"},
@@ -275,7 +281,7 @@ TEST(LoadMission, RefusesBadValues) {
       {"required: false, timeout_s: 1.5, coast_s: 0.5", "writers: {jink: [a, a]}", 11, "tracks.writers.jink[1]", "a",
        "is named twice"},
       {"coast_s: 0.5", "writers: {jink: [a]}", 11, "tracks.required", "false", "is at odds with writers"},
-      {"coast_s: 0.5", "writers: {adsb: [a]}", 11, "tracks.writers.adsb", "", "jink, autoware"},
+      {"coast_s: 0.5", "writers: {adsb: [a]}", 11, "tracks.writers.adsb", "", "jink, autoware, vision"},
       {"coast_s: 0.5", "sources: [jink, autoware], writers: {jink: [a]}", 11, "tracks.writers", "", "have 'autoware'"},
       {"coast_s: 0.5", "sources: [jink], writers: {autoware: [a]}", 11, "tracks.writers", "", "have 'jink'"},
       {"coast_s: 0.5", "origins: {jink: [91, 0, 0]}", 11, "tracks.origins.jink[0]", "91", "is not in [-90, 90]"},

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // DDS payloads as the track readers decode them, into the track table: what comes out of that is finite and bounded,
-// whatever goes in. The input is a sequence of messages: writer (0 to 3; 4 to 7: of Autoware's TrackedObjects), time
-// since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
+// whatever goes in. The input is a sequence of messages: writer (0 to 3; 4 to 7: of Autoware's TrackedObjects; 8 to 11:
+// of detections), time since the last one (10 ms), age of its stamp (100 ms), length (two bytes), payload.
 #include <cmath>
 
 #include "bridge/cdr/track_messages.hpp"
 #include "bridge/tracking/track_table.hpp"
+#include "planner/geometry/validity.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -18,16 +19,17 @@ void check(const std::vector<jink::planner::base::Track>& tracks) {
     jink::fuzz::require(finite, "a track that is not finite");
     jink::fuzz::require(track.radius > 0.0 && track.radius <= jink::bridge::tracking::TrackLimits::kRadius,
                         "an absurd radius");
+    jink::fuzz::require(jink::planner::geometry::is_valid(track.body, track.radius), "an absurd body");
     jink::fuzz::require(track.age >= 0.0, "a track from the future");
   }
 }
 
-std::optional<jink::bridge::tracking::TrackMessage> decode(std::span<const std::uint8_t> payload, bool autoware) {
-  if (autoware) {
-    auto message = jink::bridge::cdr::decode_tracked_objects(payload);
-    return message ? std::optional(std::move(message->tracks)) : std::nullopt;
-  }
-  auto message = jink::bridge::cdr::decode_obstacle_tracks(payload);
+std::optional<jink::bridge::tracking::TrackMessage> decode(std::span<const std::uint8_t> payload,
+                                                           std::uint64_t writer) {
+  using namespace jink::bridge::cdr;
+  auto message = writer < 4   ? decode_obstacle_tracks(payload)
+                 : writer < 8 ? decode_tracked_objects(payload)
+                              : decode_detections(payload);
   return message ? std::optional(std::move(message->tracks)) : std::nullopt;
 }
 
@@ -38,12 +40,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   jink::bridge::tracking::TrackTable table(1.0);
   double now = 10.0;
   while (!input.empty()) {
-    const std::uint64_t writer = input.byte() % 8U;
+    const std::uint64_t writer = input.byte() % 12U;
     now += 0.01 * input.byte();
     const double stamp_age = 0.1 * static_cast<std::int8_t>(input.byte());
     const std::size_t low = input.byte();
     const auto payload = input.bytes(low + 256U * input.byte());
-    auto message = decode(payload, writer >= 4);
+    auto message = decode(payload, writer);
     if (!message) continue;
     jink::fuzz::require(message->tracks.size() <= jink::bridge::tracking::TrackLimits::kTracksPerMessage,
                         "more tracks than a message may have");

@@ -5,8 +5,9 @@
     cyclone_tracks.py --domain 7 --rate 20 --duration 5 --obstacle 5,0,1.5,0,-1,0,0.4 --obstacle 9,2,1.5,0,0,0,0.5
 
 An obstacle is x,y,z,vx,vy,vz,radius (m, m/s), and moves in a straight line from the start of the script; its id is its
-place in the list, from 1. Writer QoS as the contract's reader expects of any writer at least: best effort, volatile.
-Prints one line `matched` when the first reader has been found, and one with the number of messages at the end.
+place in the list, from 1. With --edges all of them are boxes of these edges, in their spheres; without, the message is
+that of a writer that knows no shapes. Writer QoS as the contract's reader expects of any writer at least: best effort,
+volatile. Prints one line `matched` when the first reader has been found, and one with the number of messages at the end.
 """
 import argparse
 import time
@@ -51,6 +52,15 @@ class Vector3(IdlStruct, typename="geometry_msgs.msg.dds_.Vector3_"):
 
 @dataclass
 @annotate.final
+class Quaternion(IdlStruct, typename="geometry_msgs.msg.dds_.Quaternion_"):
+    x: types.float64
+    y: types.float64
+    z: types.float64
+    w: types.float64
+
+
+@dataclass
+@annotate.final
 class ObstacleTrack(IdlStruct, typename="jink_msgs.msg.dds_.ObstacleTrack_"):
     id: types.uint64
     position: Point
@@ -63,9 +73,29 @@ class ObstacleTrack(IdlStruct, typename="jink_msgs.msg.dds_.ObstacleTrack_"):
 
 @dataclass
 @annotate.final
+class ObstacleShape(IdlStruct, typename="jink_msgs.msg.dds_.ObstacleShape_"):
+    type: types.uint8
+    center: Point
+    orientation: Quaternion
+    yaw_rate: types.float64
+    size: Vector3
+    vertices: types.sequence[Point]
+
+
+@dataclass
+@annotate.final
+class Spheres(IdlStruct, typename="jink_msgs.msg.dds_.ObstacleTracks_"):
+    """ObstacleTracks as they were before they had shapes."""
+    header: Header
+    tracks: types.sequence[ObstacleTrack]
+
+
+@dataclass
+@annotate.final
 class ObstacleTracks(IdlStruct, typename="jink_msgs.msg.dds_.ObstacleTracks_"):
     header: Header
     tracks: types.sequence[ObstacleTrack]
+    shapes: types.sequence[ObstacleShape]
 
 
 def obstacle(text):
@@ -75,7 +105,12 @@ def obstacle(text):
     return values
 
 
-def message(obstacles, t, frame, sigma):
+def box(edges):
+    return ObstacleShape(type=1, center=Point(0.0, 0.0, 0.0), orientation=Quaternion(0.0, 0.0, 0.0, 1.0), yaw_rate=0.0,
+                         size=Vector3(*edges), vertices=[])
+
+
+def message(obstacles, t, frame, sigma, edges):
     now = time.time_ns()
     tracks = [
         ObstacleTrack(id=i + 1, position=Point(*(p + v * t for p, v in zip(o[0:3], o[3:6]))), velocity=Vector3(*o[3:6]),
@@ -83,7 +118,10 @@ def message(obstacles, t, frame, sigma):
         for i, o in enumerate(obstacles)
     ]
     stamp = Time(sec=now // 10**9, nanosec=now % 10**9)
-    return ObstacleTracks(header=Header(stamp=stamp, frame_id=frame), tracks=tracks)
+    header = Header(stamp=stamp, frame_id=frame)
+    if edges is None:
+        return Spheres(header, tracks)
+    return ObstacleTracks(header, tracks, [box(edges) for _ in obstacles])
 
 
 def main():
@@ -95,6 +133,8 @@ def main():
     parser.add_argument("--sigma", type=float, default=0.0, help="standard deviation stated for position and velocity")
     parser.add_argument("--reliable", action="store_true", help="a reliable writer instead of a best-effort one")
     parser.add_argument("--obstacle", type=obstacle, action="append", help="x,y,z,vx,vy,vz,radius; may be repeated")
+    parser.add_argument("--edges", type=lambda text: [float(edge) for edge in text.split(",")],
+                        help="x,y,z of a box (m), which all are then")
     options = parser.parse_args()
     obstacles = options.obstacle or [[5.0, 0.0, 1.5, 0.0, -1.0, 0.0, 0.4]]
 
@@ -104,13 +144,14 @@ def main():
     qos = Qos(reliability, Policy.Durability.Volatile, Policy.History.KeepLast(1),
               Policy.DataRepresentation(use_cdrv0_representation=True))
     participant = DomainParticipant(options.domain)
-    topic = Topic(participant, "rt/jink/obstacle_tracks", ObstacleTracks)
+    topic = Topic(participant, "rt/jink/obstacle_tracks",
+                  Spheres if options.edges is None else ObstacleTracks)
     writer = DataWriter(Publisher(participant), topic, qos=qos)
 
     start = time.monotonic()
     sent, matched = 0, False
     while (t := time.monotonic() - start) < options.duration:
-        writer.write(message(obstacles, t, options.frame, options.sigma))
+        writer.write(message(obstacles, t, options.frame, options.sigma, options.edges))
         sent += 1
         if not matched and writer.get_matched_subscriptions():
             matched = True

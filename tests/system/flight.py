@@ -68,10 +68,11 @@ class Arena:
             for text in sorted(self.folder.glob("*.txt")):
                 say(f"--- {text.name}\n{text.read_text(errors='replace')[-6000:]}")
 
-    def start(self, name, command):
+    def start(self, name, command, **options):
         """Starts a process whose output goes to NAME.txt."""
         with open(self.folder / f"{name}.txt", "w") as output:
-            process = subprocess.Popen([str(part) for part in command], stdout=output, stderr=subprocess.STDOUT)
+            process = subprocess.Popen([str(part) for part in command], stdout=output, stderr=subprocess.STDOUT,
+                                       **options)
         self.processes.append(process)
         return process
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who may tell `jink fly` of obstacles: a standby takes over, participants are named, a secured domain lets nobody in.
+"""Who may tell `jink fly` of obstacles: a standby takes over, participants are named, a secured domain lets nobody in. And
+what they tell: solids are flown past as they are.
 
     test_track_writers.py JINK INSTANCE
 """
@@ -19,13 +20,19 @@ SCENARIO = {"format": "jink-scenario/1", "name": "aside", "start": [0, 0, 1.5], 
             "obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}], "time_limit": 60}
 
 
+GAP = 1.2  # m, half its width
+# Two walls beside the way; the spheres around them overlap in the gap.
+WALLS = dict(SCENARIO, name="gap",
+             obstacles=[{"box": [0.4, 6, 6], "position": [12, side * (GAP + 3), 3]} for side in (-1, 1)])
+
+
 class Writers:
     """The vehicle without tracks, and programs that write them."""
 
-    def __init__(self, arena, *options):
+    def __init__(self, arena, *options, scenario=SCENARIO):
         self.arena = arena
         self.scenario = arena.folder / "scenario.yaml"
-        self.scenario.write_text(yaml.safe_dump(SCENARIO))
+        self.scenario.write_text(yaml.safe_dump(scenario))
         self.vehicle = arena.sim(self.scenario, "--no-tracks", *options)
 
     def start(self, name, *options):
@@ -100,8 +107,19 @@ def secured(jink, instance):
         interrupt(writers.vehicle)
 
 
+def shaped(jink, instance):
+    with Arena(jink, instance) as arena:
+        writers = Writers(arena, scenario=WALLS)
+        writers.start("walls")
+        fly = arena.fly(arena.mission("sitl", waypoints=[[25, 0, 1.5]], arrival="hold"))
+        check(wait(fly, 90) == 0, "the target behind two walls is reached")
+        check(interrupt(writers.vehicle) == 0, "and nothing is hit")
+        beside = [record["p"] for record in arena.log("sim.jsonl", "truth") if abs(record["p"][0] - 12) < 0.2]
+        check(beside and all(abs(y) < GAP and z < 6 for _, y, z in beside), "by the gap that the walls' spheres close")
+
+
 def test(jink, instance):
-    for case in (standby, named, namespaced, secured):
+    for case in (standby, named, namespaced, secured, shaped):
         print(f"== {case.__name__}", flush=True)
         case(jink, int(instance))
 

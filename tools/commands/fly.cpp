@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <list>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -104,8 +105,7 @@ bridge::dds::TrackReaderOptions track_options(const config::Mission& mission, br
                                               config::TrackTopic topic) {
   const config::TrackPolicy& tracks = mission.tracks;
   bridge::dds::TrackReaderOptions options;
-  options.format =
-      topic == config::TrackTopic::kAutoware ? bridge::dds::TrackFormat::kAutoware : bridge::dds::TrackFormat::kJink;
+  options.format = static_cast<bridge::dds::TrackFormat>(topic);
   options.name_space = tracks.name_space;
   for (std::size_t i = 0; i < tracks.writers.size(); ++i) {
     if (tracks.writers[i].topic == topic) options.writers[tracks.writers[i].participant] = i + 1;
@@ -121,9 +121,9 @@ struct Transports {
   Transports(const config::Mission& mission, bridge::mavsdk::MavsdkLink& mavlink, const bridge::base::Clock& clock)
       : node(mission.dds_domain, "jink", mission.dds_security), vehicle(&mavlink) {
     const config::TrackSources& sources = mission.tracks.sources;
-    if (sources.jink) tracks.add(jink.emplace(node, clock, track_options(mission, mavlink, config::TrackTopic::kJink)));
-    if (sources.autoware)
-      tracks.add(autoware.emplace(node, clock, track_options(mission, mavlink, config::TrackTopic::kAutoware)));
+    for (const config::TrackTopic topic : config::kTrackTopics) {
+      if (sources.has(topic)) tracks.add(readers.emplace_back(node, clock, track_options(mission, mavlink, topic)));
+    }
     if (sources.adsb) {
       const auto reports = [&mavlink](bridge::mavlink::AdsbReport& report) { return mavlink.next_adsb(report); };
       const auto origin = [&mavlink] { return mavlink.state().origin; };
@@ -147,7 +147,7 @@ struct Transports {
   }
 
   bridge::dds::DdsParticipant node;
-  std::optional<bridge::dds::DdsTrackReader> jink, autoware;
+  std::list<bridge::dds::DdsTrackReader> readers;
   std::optional<bridge::mavlink::AdsbTracks> adsb;
   bridge::tracking::TrackSources tracks;
   bridge::vehicle::VehicleLink* vehicle;

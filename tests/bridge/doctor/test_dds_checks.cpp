@@ -42,7 +42,7 @@ constexpr double kWindow_s = 2.0;  // long enough for discovery on this machine
 Mission tracks_mission(int domain) {
   Mission mission;
   mission.dds_domain = domain;
-  mission.tracks.sources.autoware = false;
+  mission.tracks.sources.autoware = mission.tracks.sources.vision = false;
   return mission;
 }
 
@@ -224,6 +224,19 @@ TEST(DdsInspect, SeesPx4sAgentInEitherVersion) {
       EXPECT_EQ(find(checks, in).finding, "1 reader");
     }
   }
+}
+
+TEST(DdsInspect, SeesADetectorAndLooksForTheOthersInVain) {
+  Mission mission;
+  mission.dds_domain = own_domain();
+  ChildProcess peer({python(), script("cyclone_detections.py"), "--domain", std::to_string(mission.dds_domain)});
+  const auto checks = inspect(
+      mission, [] {}, 2.0 * kWindow_s);
+  const Check live = find(checks, dds::kVisionTopic);
+  EXPECT_EQ(live.level, Check::Level::kOk) << live.finding;
+  EXPECT_TRUE(has(live.finding, "1 writer,")) << live.finding;
+  EXPECT_EQ(find(checks, dds::kTracksTopic).finding, "no writer; another source speaks");
+  EXPECT_EQ(find(checks, dds::kAutowareTopic).finding, "no writer; another source speaks");
 }
 
 TEST(QosMismatches, AreThoseOfReadersThatAskForMoreThanIsOffered) {

@@ -60,6 +60,31 @@ TEST(TrackTable, PredictsFromTheMeasurementNotFromTheReception) {
   EXPECT_EQ(table.newest_message(), 10.0);
 }
 
+// Velocities that nobody told are the table's to find, and what stands still afterwards is seen to stand.
+TEST(TrackTable, FindsTheVelocitiesOfPositions) {
+  TrackTable table(kCoast);
+  const auto tell = [&](double t, double x) {
+    TrackMessage told = message(t, 0.1, {track(1, {x, 0, 0}), track(2, {0, x, 0}, {9, 9, 9})});
+    told.positions_only = true;
+    for (Track& each : told.tracks) each.position_sigma = 0.05;
+    table.ingest(told);
+  };
+  for (int i = 0; i < 20; ++i) tell(10.0 + 0.1 * i, 0.1 * i);
+  auto tracks = table.predict(12.0, 1.0);
+  ASSERT_EQ(tracks.size(), 2U);
+  EXPECT_LT((tracks[0].velocity - Vec3(1, 0, 0)).norm(), 0.05);
+  EXPECT_LT((tracks[1].velocity - Vec3(0, 1, 0)).norm(), 0.05);
+  EXPECT_GT(tracks[0].velocity_sigma, 0.05);
+  EXPECT_NEAR(tracks[0].position.x(), 2.1, 0.1);
+  for (int i = 20; i < 40; ++i) tell(10.0 + 0.1 * i, 1.9);
+  EXPECT_GT(table.counts().frozen_messages, 0U);
+  EXPECT_LT(table.counts().frozen_messages, 6U);
+  tracks = table.predict(14.0, 1.0);
+  ASSERT_EQ(tracks.size(), 2U);
+  EXPECT_LT(tracks[0].velocity.norm(), 0.1);
+  EXPECT_NEAR(tracks[0].position.x(), 1.9, 0.1);
+}
+
 TEST(TrackTable, TrustsAnAccelerationForAWhileOnly) {
   TrackTable table(kCoast);
   table.ingest(message(10.0, 0.0, {track(1, {0, 0, 0}, {1, 0, 0}, {2, 0, 0})}));
