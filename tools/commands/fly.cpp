@@ -49,7 +49,7 @@ class EventPrinter final : public bridge::companion::FlightObserver {
 nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
                                       const config::Settings& settings) {
   const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
-  return {
+  nlohmann::ordered_json header{
       {"mission", mission.name},
       {"seed", options.common.seed},
       {"target", log::vector_json(mission.waypoints.back())},
@@ -59,6 +59,8 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
                                                  {"max", log::vector_json(mission.geofence.max)}}
                         : nullptr},
       {"parameters", log::parameters_of(settings)}};
+  if (!mission.map->tracks().empty()) header["map"] = log::map_json(*mission.map);
+  return header;
 }
 
 /// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
@@ -200,6 +202,7 @@ int run(const FlyOptions& options) {
   background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
                                mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
                                mission.connection, mission.dds_domain, options.common.seed));
+  if (!mission.map->tracks().empty()) background->line(fmt::format("map: {} solids", mission.map->tracks().size()));
   if (const std::string trouble = bridge::dds::discovery_trouble(mission.dds_domain); !trouble.empty())
     background->line("warning: " + trouble);
   run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, notifier, observers, pilot_texts);
