@@ -7,6 +7,8 @@
 
 #include "config/obstacle_reader.hpp"
 #include "config/octomap.hpp"
+#include "config/solids.hpp"
+#include "planner/geometry/polygon.hpp"
 
 namespace jink::config {
 namespace {
@@ -44,20 +46,6 @@ std::vector<Obstacle> read_zone(const Value& value) {
 }
 
 }  // namespace
-
-std::vector<Obstacle> prisms(std::span<const planner::geometry::Vec2> polygon, double min, double max) {
-  std::vector<Obstacle> all;
-  for (const std::vector<planner::geometry::Vec2>& piece : planner::geometry::convex_pieces(polygon)) {
-    Vec3 middle = Vec3::UnitZ() * (0.5 * (min + max));
-    for (const planner::geometry::Vec2& corner : piece) middle.head<2>() += corner / static_cast<double>(piece.size());
-    VertexShape hull;
-    for (const planner::geometry::Vec2& corner : piece) {
-      for (const double z : {min, max}) hull.vertices.push_back(Vec3(corner.x(), corner.y(), z) - middle);
-    }
-    all.push_back({std::move(hull), LinearMotion{middle}});
-  }
-  return all;
-}
 
 std::vector<Obstacle> read_map(const Map& keys, const std::filesystem::path& file) {
   std::vector<Obstacle> solids;

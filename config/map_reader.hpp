@@ -4,12 +4,10 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <vector>
 
 #include "config/scenario.hpp"
 #include "config/yaml.hpp"
-#include "planner/geometry/polygon.hpp"
 
 namespace jink::config {
 
@@ -20,8 +18,5 @@ namespace jink::config {
 /// corners of a simple polygon in either turn, convex or not. At most 100000 solids in all. Throws ConfigError; of
 /// what is wrong within the map's file, with that one's place.
 std::vector<Obstacle> read_map(const Map& keys, const std::filesystem::path& file);
-
-/// Prisms over a simple polygon, from `min` to `max` > min, m.
-[[nodiscard]] std::vector<Obstacle> prisms(std::span<const planner::geometry::Vec2> polygon, double min, double max);
 
 }  // namespace jink::config

@@ -96,7 +96,7 @@ struct Mission {
   /// of the frame.
   std::shared_ptr<const planner::geometry::StaticMap> map = std::make_shared<const planner::geometry::StaticMap>();
   double map_up = 0.0;           ///< z of the local frame less the map's; no key of the file, see in_local_frame
-  bool autopilot_fence = false;  ///< `fence: autopilot`: the one stored there counts, see bridge/fence
+  bool autopilot_fence = false;  ///< `fence: autopilot`: the one stored there counts, see bridge/map/fence.hpp
   int dds_domain = 0;
   std::string dds_namespace;           ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
   std::filesystem::path dds_security;  ///< folder of keys as SROS 2 lays out an enclave's; empty: none

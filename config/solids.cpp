@@ -77,6 +77,20 @@ Eigen::Matrix3d axes_at(const Obstacle& obstacle, double t) {
       .toRotationMatrix();
 }
 
+std::vector<Obstacle> prisms(std::span<const planner::geometry::Vec2> polygon, double min, double max) {
+  std::vector<Obstacle> all;
+  for (const std::vector<planner::geometry::Vec2>& piece : planner::geometry::convex_pieces(polygon)) {
+    Vec3 middle = Vec3::UnitZ() * (0.5 * (min + max));
+    for (const planner::geometry::Vec2& corner : piece) middle.head<2>() += corner / static_cast<double>(piece.size());
+    VertexShape hull;
+    for (const planner::geometry::Vec2& corner : piece) {
+      for (const double z : {min, max}) hull.vertices.push_back(Vec3(corner.x(), corner.y(), z) - middle);
+    }
+    all.push_back({std::move(hull), LinearMotion{middle}});
+  }
+  return all;
+}
+
 planner::base::Track track_at_rest(const Obstacle& obstacle) {
   const Sphere sphere = bounding_sphere(obstacle);
   planner::base::Track track;

@@ -11,6 +11,7 @@
 #include "planner/base/solid.hpp"
 #include "planner/base/types.hpp"
 #include "planner/geometry/enclosing_sphere.hpp"
+#include "planner/geometry/polygon.hpp"
 #include "planner/geometry/static_map.hpp"
 
 namespace jink::config {
@@ -28,6 +29,9 @@ namespace jink::config {
 
 /// The obstacle's own axes at time `t`, in ENU: the columns. Before t = 0 it does not turn.
 [[nodiscard]] Eigen::Matrix3d axes_at(const Obstacle& obstacle, double t);
+
+/// Prisms over a simple polygon, from `min` to `max` > min, m.
+[[nodiscard]] std::vector<Obstacle> prisms(std::span<const planner::geometry::Vec2> polygon, double min, double max);
 
 /// What reaches no higher above the ground than this is the ground itself, as in a map made from measurements, and not
 /// an obstacle: a vehicle stands on it. m.
