@@ -6,6 +6,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "config/map_reader.hpp"
+#include "config/solids.hpp"
 #include "config/vehicle_reader.hpp"
 
 namespace jink::config {
@@ -234,11 +236,12 @@ std::string_view missing_security_file(const std::filesystem::path& folder) {
 }
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(read_document(file),
-                {"format", "name", "connection", "system_id", "icao_address", "vehicle", "takeoff_height", "min_height",
-                 "heights", "waypoints", "arrival", "geofence", "dds", "tracks", "endings", "state", "setpoints",
-                 "intents", "time_limit"},
-                "jink-mission/1");
+  const Map map(
+      read_document(file),
+      {"format",  "name",      "connection", "system_id", "icao_address", "vehicle",   "takeoff_height", "min_height",
+       "heights", "waypoints", "arrival",    "geofence",  "map",          "no_fly",    "fence",          "dds",
+       "tracks",  "endings",   "state",      "setpoints", "intents",      "time_limit"},
+      "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
@@ -251,6 +254,11 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   read_heights(map, mission);
   for (const Value& point : map.at("waypoints", "a list of [x, y, z]").list(1, kMostWaypoints)) {
     mission.waypoints.push_back(read_waypoint(point, mission));
+  }
+  mission.map = make_map(read_map(map, file));
+  if (const auto fence = map.find("fence")) {
+    static constexpr std::array<std::string_view, 1> kFences = {"autopilot"};
+    mission.autopilot_fence = fence->choice(kFences) == 0;
   }
   if (const auto arrival = map.find("arrival")) {
     static constexpr std::array<std::string_view, 2> kArrivals = {"land", "hold"};
@@ -278,6 +286,7 @@ Mission in_local_frame(Mission mission, double ground, double origin_amsl) {
   for (Vec3& waypoint : mission.waypoints) waypoint.z() += up;
   mission.geofence.min.z() += up;
   mission.geofence.max.z() += up;
+  mission.map_up += up;
   mission.min_height += ground;
   mission.ground = ground;
   return mission;

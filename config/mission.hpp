@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "config/sensed_from.hpp"
 #include "planner/base/types.hpp"
+#include "planner/geometry/static_map.hpp"
 
 namespace jink::config {
 
@@ -21,7 +23,7 @@ enum class Arrival { kLand, kHold };
 /// Arming, modes and health are MAVLink's in either case.
 enum class Transport { kMavlink, kDds };
 
-/// What waypoints and geofence are above.
+/// What waypoints, geofence, map and no_fly are above.
 enum class Heights { kGround, kOrigin, kSea };
 
 /// A source of tracks on DDS; whose index is that in TrackPolicy::origins.
@@ -98,6 +100,11 @@ struct Mission {
   std::vector<Vec3> waypoints;
   Arrival arrival = Arrival::kLand;
   planner::base::Box geofence;  ///< unbounded when the file has none
+  /// Of `map` and `no_fly`, and the fence below once it is read; never null. Shared: missions are copied at each jump
+  /// of the frame.
+  std::shared_ptr<const planner::geometry::StaticMap> map = std::make_shared<const planner::geometry::StaticMap>();
+  double map_up = 0.0;           ///< z of the local frame less the map's; no key of the file, see in_local_frame
+  bool autopilot_fence = false;  ///< `fence: autopilot`: the one stored there counts, see bridge/map/fence.hpp
   int dds_domain = 0;
   std::string dds_namespace;           ///< before PX4's topics: "px4_1" means rt/px4_1/fmu/...; empty: rt/fmu/...
   std::filesystem::path dds_security;  ///< folder of keys as SROS 2 lays out an enclave's; empty: none
@@ -115,7 +122,8 @@ struct Mission {
 ///
 /// Required: format, name, connection, vehicle, waypoints (one or more). Optional, with the defaults of Mission:
 /// system_id, icao_address (six hexadecimal digits), takeoff_height, min_height, heights (ground, origin or amsl),
-/// arrival, geofence (unbounded; with both min and max when given), dds and each of its keys (security: a folder, from
+/// arrival, geofence (unbounded; with both min and max when given), map and no_fly (config/map_reader.hpp), fence
+/// (autopilot), dds and each of its keys (security: a folder, from
 /// the file's on), tracks and each of its keys, endings and each of its keys, state and setpoints (mavlink or dds),
 /// intents, time_limit.
 ///

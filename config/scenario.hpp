@@ -139,6 +139,7 @@ struct Scenario {
   std::optional<planner::base::Box> world;
   Sensing sensing;
   std::vector<Obstacle> obstacles;
+  std::vector<Obstacle> map;  ///< of `map`, then of `no_fly`: at rest, and known without being sensed
   Wind wind;
   EstimateErrors estimate;
   std::vector<Fault> faults;              ///< in the file's order
@@ -154,7 +155,8 @@ struct Scenario {
 /// Required: format, name, start, target, vehicle, obstacles (a list, [] for none), and every key of a motion but the
 /// velocity and acceleration of a linear one. An obstacle has exactly one of radius, box, cylinder (radius, height),
 /// capsule (radius, a, b) and vertices. Optional: orientation and yaw_rate of an obstacle that is no sphere,
-/// time_limit, world (with both min and max), sensing and each of its keys, vehicles (further ones, at most 9, each
+/// time_limit, world (with both min and max), map and no_fly (config/map_reader.hpp), sensing and each of its keys,
+/// vehicles (further ones, at most 9, each
 /// with start and target, and vehicle where it is another one), wind and each of its keys, estimate (px4, the default,
 /// none, or a map of any of its keys), faults (a list, at most 1000; kinds and keys as in config/faults.hpp). Checked:
 /// starts and targets lie in the world, and no two starts are above each other so that the vehicles would touch on the

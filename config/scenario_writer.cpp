@@ -98,6 +98,14 @@ struct AddMotion {
   }
 };
 
+std::string obstacle_text(const Obstacle& obstacle) {
+  FlowMap map;
+  std::visit(AddShape{map}, obstacle.shape);
+  map.add_unless(Vec3::Zero(), "orientation", obstacle.orientation).add_unless(0.0, "yaw_rate", obstacle.yaw_rate);
+  std::visit(AddMotion{map}, obstacle.motion);
+  return map.text();
+}
+
 std::string vehicle_text(const std::string& name, const planner::base::VehicleLimits& limits) {
   if (is_project_vehicle(name, limits)) return in_quotes(name);
   FlowMap map;
@@ -158,13 +166,9 @@ std::string to_yaml(const Scenario& scenario) {
   const std::string estimate = estimate_text(scenario.estimate);
   line("estimate", estimate == "{}" ? "none" : estimate);
   out += scenario.obstacles.empty() ? "obstacles: []\n" : "obstacles:\n";
-  for (const Obstacle& obstacle : scenario.obstacles) {
-    FlowMap map;
-    std::visit(AddShape{map}, obstacle.shape);
-    map.add_unless(Vec3::Zero(), "orientation", obstacle.orientation).add_unless(0.0, "yaw_rate", obstacle.yaw_rate);
-    std::visit(AddMotion{map}, obstacle.motion);
-    out += "- " + map.text() + "\n";
-  }
+  for (const Obstacle& obstacle : scenario.obstacles) out += "- " + obstacle_text(obstacle) + "\n";
+  if (!scenario.map.empty()) out += "map:\n";
+  for (const Obstacle& solid : scenario.map) out += "- " + obstacle_text(solid) + "\n";
   if (!scenario.vehicles.empty()) out += "vehicles:\n";
   for (const ScenarioVehicle& further : scenario.vehicles) {
     FlowMap map;

@@ -40,6 +40,7 @@ class Value {
   /// The index of this text among `names`.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }
+  [[nodiscard]] bool is_list() const { return node_.IsSequence(); }
 
   /// Throws `PLACE: key 'PATH': value 'VALUE' COMPLAINT`.
   [[noreturn]] void fail(const std::string& complaint) const;

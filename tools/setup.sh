@@ -21,7 +21,7 @@ for group in "$@"; do
   case $group in
   lab) packages+=(libompl-dev libpagmo-dev libboost-math-dev gnuplot-nox fonts-dejavu-core) ;;
   test)
-    packages+=(libgtest-dev fonts-dejavu-core openssl)
+    packages+=(libgtest-dev liboctomap-dev fonts-dejavu-core openssl)
     requirements+=(tools/requirements-test.txt tools/requirements-clients.txt)
     # A browser without a screen, where there is none: the flight report is played and looked at (64 MB and its libraries).
     command -v chromium-headless-shell chromium google-chrome >/dev/null || packages+=(chromium-headless-shell)

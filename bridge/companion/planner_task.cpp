@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridge/companion/planner_task.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <utility>
@@ -14,6 +15,18 @@ void lead(planner::horizon::Guide& guide, PlanJob& job) {
 }
 
 }  // namespace
+
+void MapView::append_to(std::vector<planner::base::Track>& tracks) const {
+  if (map == nullptr) return;
+  const std::size_t before = tracks.size();
+  map->near(where, up, tracks);
+  const auto first = tracks.begin() + static_cast<std::ptrdiff_t>(before);
+  const auto is_ground = [this](const planner::base::Track& track) {
+    return planner::geometry::box_around(track).max.z() <= floor;
+  };
+  tracks.erase(std::remove_if(first, tracks.end(), is_ground), tracks.end());
+  for (std::size_t i = before; i < tracks.size(); ++i) tracks[i].position_sigma = sigma;
+}
 
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
     : settings_(settings),

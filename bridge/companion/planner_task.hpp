@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "bridge/base/notifier.hpp"
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/setpoints/tracking_offset.hpp"
+#include "planner/geometry/static_map.hpp"
 #include "planner/horizon/guide.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 
@@ -28,13 +30,26 @@ struct Goal {
   bool stuck = false;          ///< PathRequest::stuck
 };
 
+/// What a plan sees of the static map. With it the same obstacles are found again.
+struct MapView {
+  std::shared_ptr<const planner::geometry::StaticMap> map;  ///< shared by all plans of a flight; none: there is none
+  planner::base::Box where;                                 ///< local ENU, m
+  double up = 0.0;                                          ///< z of the local frame less the map's
+  double floor = -planner::base::kInfinity;  ///< z; what reaches no higher is the ground, not an obstacle
+  double sigma = 0.0;                        ///< of the vehicle's own place in it
+
+  /// Appends what is in view, in the map's order, at rest.
+  void append_to(std::vector<planner::base::Track>& tracks) const;
+};
+
 /// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
 struct PlanJob {
   planner::horizon::PathRequest request;  ///< `tracks` and `paths` are set by the task to what follows from the below
   std::vector<planner::base::Track> tracks;
   std::vector<prediction::Forecast> forecasts;      ///< of some of the tracks
   std::vector<planner::geometry::KnownPath> paths;  ///< of the team's other vehicles
-  planner::base::TimedPath previous;                ///< times from `start` on
+  MapView map;
+  planner::base::TimedPath previous;  ///< times from `start` on
   Goal::Kind goal = Goal::Kind::kWaypoint;
   Vec3 target = Vec3::Zero();  ///< of the goal; the guide may lead to another first, which is the request's
   std::uint64_t number = 0;
@@ -55,8 +70,10 @@ struct PlanResult {
 /// What the job's plan is to avoid up to that planner's horizon.
 [[nodiscard]] inline prediction::Obstacles obstacles_of(const PlanJob& job,
                                                         const planner::base::HorizonSettings& settings) {
-  return prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time, settings.step,
-                                  settings.acceleration_trust);
+  prediction::Obstacles obstacles = prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time,
+                                                             settings.step, settings.acceleration_trust);
+  job.map.append_to(obstacles.tracks);
+  return obstacles;
 }
 /// The same. The request refers to it, until forget_obstacles().
 [[nodiscard]] inline prediction::Obstacles set_obstacles(PlanJob& job, const planner::base::HorizonSettings& settings) {

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "bridge/companion/route.hpp"
+#include "config/solids.hpp"
 #include "planner/horizon/path_check.hpp"
+#include "planner/horizon/reach.hpp"
 
 namespace jink::bridge::companion {
 namespace {
@@ -135,6 +137,16 @@ void Planning::look_around(double now, Intake& intake, PlanJob& job) const {
   blur(job.forecasts, sigma);
 }
 
+// All of the map that a path of the job's request can come near to, and what it may land on.
+void Planning::look_at_map(const vehicle::VehicleState& state, PlanJob& job) const {
+  job.map.map = mission_.map;
+  job.map.where = planner::horizon::reach_of(job.request, settings_.horizon);
+  job.map.where.min.z() = std::min(job.map.where.min.z(), mission_.ground);
+  job.map.up = mission_.map_up;
+  job.map.floor = std::min(mission_.ground, mission_.min_height) + config::kRelief;
+  job.map.sigma = state.position_sigma;
+}
+
 // What is asked of any path of the vehicle; the request says where it begins and leads to.
 // Of what the largest tilt gives, the drag takes what no plan can speed up or brake with any more.
 double Planning::attainable_speed(double drag) const {
@@ -187,6 +199,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   demand(state, request.stuck ? settings_.horizon.margin : motion.margin(), request);
   double& largest_margin = reporter_.summary().largest_margin;
   largest_margin = std::max(largest_margin, request.margin);
+  look_at_map(state, job);
   request.vehicle.max_speed = attainable_speed(stream.drag());
   request.vehicle.max_acceleration *= share;
   request.vehicle.cruise_speed *= share;
@@ -236,11 +249,12 @@ planner::base::TimedPath Planning::stop(double now, Intake& intake, const Motion
   PlanJob job;
   job.start = now;
   look_around(now, intake, job);
-  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
   job.request.position = flown.front().front().position;
   job.request.velocity = flown.front().front().velocity;
   job.request.target = flown.front().back().position;
   demand(intake.state(), motion.margin(), job.request);
+  look_at_map(intake.state(), job);
+  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
   planner::horizon::Stop chosen = contingency_.choose(job.request, flown);
   reporter_.stops(now, chosen);
   for (planner::base::TimedPoint& point : chosen.path) point.t += now;
@@ -258,9 +272,10 @@ bool Planning::climbs_free(double now, Intake& intake) const {
   std::erase_if(job.tracks,
                 [&](const planner::base::Track& t) { return (t.position - ground).norm() < t.radius + radius; });
   job.forecasts.clear();  // they number the tracks; for so short a time the tracks do
-  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
   job.request.position = job.request.target = ground;
   demand(intake.state(), settings_.horizon.margin, job.request);
+  look_at_map(intake.state(), job);
+  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
   job.request.volume = {};
   return std::all_of(kLiftOff.begin(), kLiftOff.end(), [&](double lift_off) {
     const double up = lift_off + (top - ground).norm() / kClimbing;

@@ -60,6 +60,7 @@ class Planning {
   [[nodiscard]] static std::vector<planner::base::TimedPath> stops(double now, const MotionControl& motion,
                                                                    const MotionControl::StopStart& start);
   void look_around(double now, Intake& intake, PlanJob& job) const;
+  void look_at_map(const vehicle::VehicleState& state, PlanJob& job) const;
   /// The speed up to which plans can be followed with this drag, 1/s; never below the cruise speed.
   [[nodiscard]] double attainable_speed(double drag) const;
   void demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const;

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "bridge/doctor/vehicle_checks.hpp"
+#include "bridge/map/fence.hpp"
 #include "bridge/supervisor/dangers.hpp"
 
 namespace jink::bridge::doctor {
@@ -99,6 +102,31 @@ Check inspect_fence(const config::Mission& mission, const vehicle::VehicleState&
   return {Level::kOk, "geofence", box + " contains vehicle and waypoints", ""};
 }
 
+void inspect_map(const config::Mission& mission, const LinkFindings& heard, std::vector<Check>& checks) {
+  if (const std::size_t solids = mission.map->tracks().size(); solids > 0)
+    checks.push_back({Level::kOk, "map", fmt::format("{} solid{}", solids, solids == 1 ? "" : "s"), ""});
+  if (!mission.autopilot_fence) return;
+  Check check{Level::kFault, "autopilot's fence", "not read: the autopilot did not tell it",
+              "`jink fly` refuses to fly"};
+  if (heard.fence && heard.fence->empty()) {
+    check = {Level::kWarning, check.name, "empty",
+             "upload one by a ground station, or take `fence` out of the mission"};
+  } else if (heard.fence && !heard.state.origin) {
+    check.finding = fmt::format("{} items, which cannot be placed without an origin", heard.fence->size());
+  } else if (heard.fence) {
+    try {
+      const config::Mission fenced = map::fenced(mission, *heard.fence, *heard.state.origin);
+      check = {Level::kOk, check.name,
+               fmt::format("{} items, {} solids", heard.fence->size(),
+                           fenced.map->tracks().size() - mission.map->tracks().size()),
+               ""};
+    } catch (const std::runtime_error& error) {
+      check.finding = error.what();
+    }
+  }
+  checks.push_back(std::move(check));
+}
+
 void inspect_waypoints(const config::Mission& mission, const vehicle::VehicleState& s, std::vector<Check>& checks) {
   Vec3 from = beginning(mission, s);
   const double first = (mission.waypoints.front() - from).norm();
@@ -145,6 +173,7 @@ void inspect_waypoints(const config::Mission& mission, const vehicle::VehicleSta
 std::vector<Check> inspect_mission(const config::Mission& mission, const LinkFindings& heard) {
   if (!heard.autopilot) return {};
   std::vector<Check> checks{inspect_position(mission, heard), inspect_origin(mission, heard)};
+  inspect_map(mission, heard, checks);
   if (mission.tracks.sources.adsb) {
     checks.push_back({Level::kOk, "ADS-B",
                       heard.aircraft_reports > 0 ? fmt::format("{} reports of aircraft", heard.aircraft_reports)

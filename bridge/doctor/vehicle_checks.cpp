@@ -18,6 +18,7 @@ using Level = Check::Level;
 
 constexpr double kSettle_s = 1.5;         // until the rates asked for are there: a heartbeat and a half
 constexpr double kParameterTime_s = 3.0;  // at most, for all of them
+constexpr double kFenceTime_s = 5.0;
 constexpr auto kSlice = std::chrono::milliseconds(50);
 constexpr double kRateTolerance = 0.8;  // of the rate expected
 constexpr double kLeastPosition_hz = 10.0;
@@ -180,7 +181,8 @@ void inspect_vehicle(const LinkFindings& heard, std::vector<Check>& checks) {
 
 }  // namespace
 
-LinkFindings listen(mavsdk::MavsdkLink& link, const base::Clock& clock, double seconds, const std::stop_token& stop) {
+LinkFindings listen(mavsdk::MavsdkLink& link, const base::Clock& clock, double seconds, const std::stop_token& stop,
+                    bool fence) {
   LinkFindings heard;
   const double begun = clock.now();
   heard.autopilot = link.wait_for_autopilot(seconds, stop);
@@ -193,6 +195,7 @@ LinkFindings listen(mavsdk::MavsdkLink& link, const base::Clock& clock, double s
   for (const auto& value : values) {
     if (value) heard.parameters[value->name] = *value;
   }
+  if (fence) heard.fence = link.read_fence(kFenceTime_s, stop);
   wait(clock, since + seconds, stop);
   heard.rates = link.rates();
   heard.listened_s = clock.now() - since;

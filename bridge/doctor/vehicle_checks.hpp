@@ -28,11 +28,14 @@ struct LinkFindings {
   std::map<std::string, vehicle::px4::Parameter> parameters;  ///< those of the doctor that were answered
   std::vector<mavlink::LinkNotice> notices;
   std::uint64_t aircraft_reports = 0;  ///< ADSB_VEHICLE
+  std::optional<std::vector<mavlink::MissionItem>>
+      fence;  ///< the autopilot's, where the mission is by it; none: not read
 };
 
-/// Waits for an autopilot for `seconds`, then asks and listens for about `seconds`. Returns early when `stop` says so.
+/// Waits for an autopilot for `seconds`, then asks and listens for about `seconds`; to read its fence, where that is
+/// asked for, takes some more. Returns early when `stop` says so.
 [[nodiscard]] LinkFindings listen(mavsdk::MavsdkLink& link, const base::Clock& clock, double seconds,
-                                  const std::stop_token& stop);
+                                  const std::stop_token& stop, bool fence = false);
 
 /// Link, version, rates, health, mode, parameters, in this order; without an autopilot one finding, kMissing.
 [[nodiscard]] std::vector<Check> inspect_link(const config::Mission& mission, const LinkFindings& heard);

@@ -177,6 +177,22 @@ bool read(const json& fields, ParamValue& message) {
   return !message.name.empty() && read(fields, "param_type", message.type);
 }
 
+bool read(const json& fields, MissionCount& message) {
+  (void)read(fields, "mission_type", message.mission_type);  // an extension field
+  (void)read(fields, "target_component", message.target_component);
+  return read(fields, "count", message.count) && message.count <= 0xffffU;
+}
+
+bool read(const json& fields, MissionItem& message) {
+  (void)read(fields, "mission_type", message.mission_type);
+  (void)read(fields, "target_component", message.target_component);
+  message.param1 = number(fields, "param1");
+  message.latitude_deg = number(fields, "x") / kDegreesE7;
+  message.longitude_deg = number(fields, "y") / kDegreesE7;
+  return read(fields, "seq", message.seq) && read(fields, "command", message.command) &&
+         std::abs(message.latitude_deg) <= 90.0 && std::abs(message.longitude_deg) <= 180.0;
+}
+
 bool read(const json& fields, StatusText& message) {
   (void)read(fields, "id", message.id);
   (void)read(fields, "chunk_seq", message.chunk);
@@ -220,6 +236,8 @@ constexpr std::array<std::pair<std::string_view, Decoder>, std::variant_size_v<M
     {"AUTOPILOT_VERSION", decode_as<AutopilotVersion>},
     {"PING", decode_as<Ping>},
     {"PARAM_VALUE", decode_as<ParamValue>},
+    {"MISSION_COUNT", decode_as<MissionCount>},
+    {"MISSION_ITEM_INT", decode_as<MissionItem>},
     {"STATUSTEXT", decode_as<StatusText>},
     {"ADSB_VEHICLE", decode_as<AdsbReport>},
 }};

@@ -99,6 +99,22 @@ struct ParamValue {
   std::uint32_t type = 0;  ///< MAV_PARAM_TYPE
   double field = 0.0;      ///< as it stands, for px4::parameter(); NaN: bytes that are no number as a float
 };
+/// How many items a list on the autopilot has.
+struct MissionCount {
+  std::uint32_t count = 0;
+  std::uint32_t mission_type = 0;      ///< MAV_MISSION_TYPE: 1 is the fence
+  std::uint32_t target_component = 0;  ///< who asked; 0: all
+};
+/// MISSION_ITEM_INT, of a place on the earth.
+struct MissionItem {
+  std::uint32_t seq = 0;
+  std::uint32_t command = 0;  ///< MAV_CMD
+  double param1 = 0.0;        ///< of a fence's polygon the number of its corners, of a circle the radius, m
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  std::uint32_t mission_type = 0;
+  std::uint32_t target_component = 0;
+};
 struct StatusText {
   std::uint32_t severity = 0;
   std::uint32_t id = 0;  ///< extension fields: a text in chunks
@@ -109,7 +125,7 @@ struct StatusText {
 /// AdsbReport: its time and sender are the caller's to fill in.
 using Message = std::variant<Heartbeat, CurrentMode, LocalPosition, Attitude, Odometry, SysStatus, ExtendedSysState,
                              EstimatorStatus, BatteryStatus, Origin, Home, CommandAck, AutopilotVersion, Ping,
-                             ParamValue, StatusText, AdsbReport>;
+                             ParamValue, MissionCount, MissionItem, StatusText, AdsbReport>;
 
 /// Decodes the message `name` (MAVLink's name) from `json`, an object with a member for each field. Nothing where the
 /// name is none of these, the text is no such object, or a field that matters is missing, not finite or beyond Limits.

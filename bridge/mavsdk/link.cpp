@@ -112,7 +112,7 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
       autopilot_ = std::make_unique<Listener>(*this, std::move(found));
       system_id_ = autopilot_->system_id();
       join_system();
-      static constexpr std::array<Interest, 17> kInterests{{{"HEARTBEAT"},
+      static constexpr std::array<Interest, 19> kInterests{{{"HEARTBEAT"},
                                                             {"CURRENT_MODE"},
                                                             {"LOCAL_POSITION_NED"},
                                                             {"ATTITUDE"},
@@ -127,6 +127,8 @@ bool MavsdkLink::Impl::wait_for_autopilot(double timeout_s, const std::stop_toke
                                                             {"AUTOPILOT_VERSION"},
                                                             {"PING"},
                                                             {"PARAM_VALUE"},
+                                                            {"MISSION_COUNT"},
+                                                            {"MISSION_ITEM_INT"},
                                                             {"STATUSTEXT"},
                                                             {"ADSB_VEHICLE", From::kAnyComponent}}};
       autopilot_->subscribe(kInterests);

@@ -15,6 +15,7 @@
 #include "bridge/base/clock.hpp"
 #include "bridge/mavlink/adsb_tracks.hpp"
 #include "bridge/mavlink/autopilot_telemetry.hpp"
+#include "bridge/mavlink/messages.hpp"
 #include "bridge/vehicle/px4.hpp"
 #include "bridge/vehicle/status_text.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
@@ -32,8 +33,8 @@ struct StreamRate {
 
 /// A companion computer (MAVLink component of the vehicle's own system, with its own heartbeat) and the first autopilot
 /// that it hears, which stays its own: what other systems say changes nothing but LinkCounts::other_autopilots and the
-/// aircraft of next_adsb(). All functions are safe from any thread; only wait_for_autopilot() and read_parameters()
-/// block.
+/// aircraft of next_adsb(). All functions are safe from any thread; only wait_for_autopilot(), read_parameters() and
+/// read_fence() block.
 ///
 /// state(): `heartbeat_stamp`, `armed`, `mode` and `failsafe` come from the HEARTBEAT of that autopilot alone, which
 /// PX4 sends once a second and not on change. `local_position_ok` needs a position younger than kPositionMaxAge_s and,
@@ -94,6 +95,11 @@ class MavsdkLink final : public vehicle::VehicleLink {
   [[nodiscard]] std::vector<std::optional<vehicle::px4::Parameter>> read_parameters(std::span<const std::string> names,
                                                                                     double timeout_s,
                                                                                     const std::stop_token& stop = {});
+
+  /// Asks for the geofence that the autopilot keeps, as a list of mission items, and blocks until it is whole, or
+  /// `timeout_s` or `stop`: nothing then. Empty: it keeps none.
+  [[nodiscard]] std::optional<std::vector<mavlink::MissionItem>> read_fence(double timeout_s,
+                                                                            const std::stop_token& stop = {});
 
   /// Begins to measure how HEARTBEAT, LOCAL_POSITION_NED, ATTITUDE, ODOMETRY and CURRENT_MODE come.
   void restart_rates();

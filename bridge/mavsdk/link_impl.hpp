@@ -46,6 +46,7 @@ class MavsdkLink::Impl {
   std::vector<StreamRate> rates() const;
   std::vector<std::optional<vehicle::px4::Parameter>> read_parameters(std::span<const std::string> names,
                                                                       double timeout_s, const std::stop_token& stop);
+  std::optional<std::vector<mavlink::MissionItem>> read_fence(double timeout_s, const std::stop_token& stop);
   std::uint32_t autopilot_system_id() const { return ready_ ? system_id_ : 0; }
 
  private:
@@ -120,6 +121,8 @@ class MavsdkLink::Impl {
   void on(double now, const Sender& sender, const mavlink::CommandAck& message);
   void on(double now, const Sender& sender, const mavlink::Ping& message);
   void on(double now, const Sender& sender, const mavlink::ParamValue& message);
+  void on(double now, const Sender& sender, const mavlink::MissionCount& message);
+  void on(double now, const Sender& sender, const mavlink::MissionItem& message);
   void on(double now, const Sender& sender, const mavlink::AdsbReport& message);
   template <typename Other>  // what the state of the autopilot alone takes in
   void on(double /*now*/, const Sender& /*sender*/, const Other& message) {
@@ -149,12 +152,16 @@ class MavsdkLink::Impl {
   std::uint64_t dropped_adsb_ = 0;
   std::uint64_t answers_ = 0;
   std::map<std::string, vehicle::px4::Parameter> parameters_;  // answers to the request under way
+  bool fence_asked_ = false;
+  std::optional<std::uint32_t> fence_count_;  // of the fence under way
+  std::vector<mavlink::MissionItem> fence_;   // in order, as far as they came
   double ping_due_ = 0.0;
   vehicle::CommandTracker commands_;
-  std::condition_variable_any parameter_came_;
+  std::condition_variable_any parameter_came_, fence_came_;
 
   std::mutex wait_mutex_;            // serialises wait_for_autopilot
   std::mutex parameter_mutex_;       // serialises read_parameters
+  std::mutex fence_mutex_;           // serialises read_fence
   std::atomic<bool> ready_ = false;  // autopilot_ stands; set once
   const std::uint32_t wanted_system_;
   std::uint32_t system_id_ = 0;

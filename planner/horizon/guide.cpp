@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "planner/geometry/static_map.hpp"
 #include "planner/horizon/path_check.hpp"
 
 namespace jink::planner::horizon {
@@ -85,12 +86,13 @@ void Guide::notice(const PathRequest& request, double now) {
   }
   double sight = 0.0;
   for (const base::Track& track : request.tracks) {
-    sight = std::max(sight, (track.position - request.position).norm());
+    const bool is_mapped = track.id >= geometry::StaticMap::kFirstId;
+    if (!is_mapped) sight = std::max(sight, (track.position - request.position).norm());
     const auto known = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& s) { return s.track.id == track.id; });
     if (!rests(track)) {
       if (known != seen_.end()) seen_.erase(known);
     } else if (known == seen_.end()) {
-      seen_.push_back({track, now, now});
+      seen_.push_back({track, is_mapped ? now - kSettled : now, now});
     } else {
       const bool moved = (known->track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
       *known = {track, moved ? now : known->since, now};

@@ -12,17 +12,38 @@
 #include "planner/horizon/guide.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/path_check.hpp"
+#include "planner/horizon/reach.hpp"
 
 namespace jink::planner::horizon {
 namespace {
 
 constexpr double kJoint = 1e-9;  // s, within which two instants are the same
+constexpr double kNear = 5.0;    // m, from a path, within which the map is looked at first
 
 constexpr double kSecond = 0.05;    // m, of length, for which a path may take a second more
 constexpr double kTimeGiven = 1.6;  // times a path's own, for it to be pulled tight; more leave hardly less length
 
+/// All tracks, and of the map what is within `reach` of the box around the path.
+std::vector<base::Track> tracks_along(const base::TimedPath& path, const OpenLoopRequest& request, double reach) {
+  std::vector<base::Track> tracks(request.path.tracks.begin(), request.path.tracks.end());
+  if (request.map == nullptr) return tracks;
+  base::Box box{path.front().position, path.front().position};
+  for (const base::TimedPoint& point : path) box = {box.min.cwiseMin(point.position), box.max.cwiseMax(point.position)};
+  request.map->near(geometry::grown(box, reach), 0.0, tracks);
+  return tracks;
+}
+
+/// Of the map what is near, and farther away only until nothing there can be the nearest.
 verify::Verification verify_whole(const base::TimedPath& path, const OpenLoopRequest& request, double step) {
-  verify::Verification whole = verify_until(path, request.path, base::kInfinity);
+  const std::size_t all = request.path.tracks.size() + (request.map != nullptr ? request.map->tracks().size() : 0);
+  PathRequest among = request.path;
+  verify::Verification whole;
+  for (double reach = kNear;; reach *= 4.0) {
+    const std::vector<base::Track> tracks = tracks_along(path, request, reach);
+    among.tracks = tracks;
+    whole = verify_until(path, among, base::kInfinity);
+    if (tracks.size() == all || whole.min_clearance + among.vehicle.radius <= reach) break;
+  }
   whole.limits = use_of_limits(path, request.path, step);
   return whole;
 }
@@ -60,16 +81,18 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
                      const base::Budget& budget, base::WorkerPool& pool) {
   verify::Plan whole;
   PathRequest from = request.path;
-  std::vector<base::Track> now(request.path.tracks.size());
-  from.tracks = now;
+  std::vector<base::Track> now;
   std::vector<geometry::KnownPath> paths(request.path.paths.begin(), request.path.paths.end());
   from.paths = paths;
   base::TimedPath previous;
   Guide guide(planner.settings(), Guide::Knowledge::kWhole);
   double t = 0.0;
   for (std::uint64_t number = 0;; ++number) {
-    std::transform(request.path.tracks.begin(), request.path.tracks.end(), now.begin(),
-                   [&](const base::Track& track) { return geometry::predict(track, t, from.acceleration_trust); });
+    now.clear();
+    for (const base::Track& track : request.path.tracks)
+      now.push_back(geometry::predict(track, t, from.acceleration_trust));
+    if (request.map != nullptr) request.map->near(reach_of(from, planner.settings()), 0.0, now);
+    from.tracks = now;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const geometry::KnownPath& at_start = request.path.paths[i];
       paths[i].offset = at_start.offset + t;
@@ -130,8 +153,10 @@ double cost(const base::TimedPath& path) {
 /// Where the path arrives, and pulled tight is as good and costs less, or reaches where it did not, that is the path. A
 /// band that is given time bends more; from rest it has as much as it needs.
 void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& settings, verify::Plan& plan) {
-  const PathRequest& from = request.path;
+  PathRequest from = request.path;
   if (plan.path.size() < 3 || !arrives(plan.path, from)) return;
+  const std::vector<base::Track> tracks = tracks_along(plan.path, request, kNear);
+  from.tracks = tracks;
   const double acceleration = settings.planned_acceleration(from.vehicle.max_acceleration);
   const double time_limit = std::max(request.time_limit, plan.path.back().t);
   const double clearance = plan.status == verify::PlanStatus::kReaches
@@ -162,6 +187,7 @@ verify::Plan straight_way(HorizonPlanner& planner, const OpenLoopRequest& reques
   OpenLoopRequest empty = request;
   empty.path.tracks = {};
   empty.path.paths = {};
+  empty.map = nullptr;
   verify::Plan plan = attempt(planner, empty, seed, budget, pool);
   judge(request, planner.settings().step, plan);
   pull_tight(request, planner.settings(), plan);
@@ -174,10 +200,12 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
                             const OpenLoopRequest& request, std::uint64_t seed, const base::Budget& budget,
                             base::WorkerPool& pool, const optimizer::MakeOptimizer& make) {
   if (!is_valid(request.path) || !(request.time_limit >= 0.0) || !(request.commit > 0.0)) return {};
-  if (verify::start_blocked(request.path.position, request.path.vehicle.radius, request.path.tracks,
+  verify::Plan rest;
+  rest.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
+  const double radius = request.path.vehicle.radius;
+  if (verify::start_blocked(request.path.position, radius, tracks_along(rest.path, request, radius),
                             request.path.paths)) {
-    verify::Plan plan;
-    plan.path.push_back({0.0, request.path.position, Vec3::Zero(), Vec3::Zero()});
+    verify::Plan plan = std::move(rest);
     plan.verification = verify_whole(plan.path, request, settings.step);
     plan.status = verify::PlanStatus::kStartBlocked;
     return plan;

@@ -7,6 +7,7 @@
 #include "planner/base/budget.hpp"
 #include "planner/base/settings.hpp"
 #include "planner/base/worker_pool.hpp"
+#include "planner/geometry/static_map.hpp"
 #include "planner/horizon/path_problem.hpp"
 #include "planner/optimizer/optimizer.hpp"
 #include "planner/verify/plan.hpp"
@@ -15,9 +16,10 @@ namespace jink::planner::horizon {
 
 /// What an open-loop plan starts from.
 struct OpenLoopRequest {
-  PathRequest path;         ///< from rest at the start; tracks valid at t = 0
-  double time_limit = 0.0;  ///< the path is cut here; not below 0
-  double commit = 0.5;      ///< how much of each plan is kept before planning on: whole steps; above 0
+  PathRequest path;                          ///< from rest at the start; tracks valid at t = 0
+  double time_limit = 0.0;                   ///< the path is cut here; not below 0
+  double commit = 0.5;                       ///< how much of each plan is kept before planning on: whole steps; above 0
+  const geometry::StaticMap* map = nullptr;  ///< what stands still besides; borrowed, none: nothing does
 };
 
 /// One plan after the other along the path itself, the obstacles extrapolated from t = 0. What arrives is pulled tight

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "config/solids.hpp"
 #include "sim/faults/fault_timeline.hpp"
 #include "sim/faults/vehicle_faults.hpp"
 #include "sim/flight/closed_loop_judge.hpp"
@@ -31,6 +32,7 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
   mission.waypoints = {own.target};
   mission.arrival = config::Arrival::kHold;
   mission.geofence = scenario.world.value_or(planner::base::Box{});
+  mission.map = config::make_map(scenario.map);
   mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
   mission.time_limit = scenario.time_limit;
   mission.tracks.sensed_from = scenario.sensing.sensed_from;

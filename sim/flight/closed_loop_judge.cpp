@@ -93,8 +93,7 @@ void ClosedLoopJudge::watch_obstacles(std::size_t k, double t, const Vec3& to) {
   const world::SweepResult nearest = world_.sweep(last_[k], last_t_, to, t, vehicles_[k].vehicle.radius);
   reports_[k].min_clearance = std::min(reports_[k].min_clearance, nearest.min_clearance);
   if (nearest.min_clearance >= 0.0) return;
-  fail(k, bridge::supervisor::Outcome::kCollision,
-       "hit obstacle " + std::to_string(world::World::id(nearest.obstacle)) + at_time(nearest.t_min));
+  fail(k, bridge::supervisor::Outcome::kCollision, "hit " + world_.name(nearest.obstacle) + at_time(nearest.t_min));
 }
 
 void ClosedLoopJudge::watch_pair(std::size_t a, std::size_t b, double t, std::span<const world::VehicleTruth> now) {

@@ -74,7 +74,7 @@ void SimulatorJudge::judge_obstacles(std::size_t k, double t, const Vec3& to, st
   const world::SweepResult sweep = world_.sweep(last_[k], last_t_, to, t, vehicles_[k].vehicle.radius);
   reports_[k].min_clearance = std::min(reports_[k].min_clearance, sweep.min_clearance);
   if (sweep.min_clearance >= 0.0) return;
-  hit(k, "obstacle " + std::to_string(world::World::id(sweep.obstacle)), sweep.t_min, verdicts);
+  hit(k, world_.name(sweep.obstacle), sweep.t_min, verdicts);
 }
 
 // One that has failed falls or flies on, and can still be hit by another.

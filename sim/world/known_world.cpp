@@ -28,6 +28,8 @@ KnownWorld::KnownWorld(const config::Scenario& scenario) {
   open_loop.path.vehicle = scenario.vehicle;
   open_loop.path.tracks = tracks;
   open_loop.path.margin = kMargin;
+  map = world.map();
+  open_loop.map = map.get();
   open_loop.time_limit = scenario.time_limit;
 }
 

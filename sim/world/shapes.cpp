@@ -286,70 +286,7 @@ double depth(const config::VertexShape& /*shape*/) {
   return 0.0;
 }
 
-Sphere enclose(const config::SphereShape& shape) {
-  return {Vec3::Zero(), shape.radius};
-}
-Sphere enclose(const config::BoxShape& shape) {
-  return {Vec3::Zero(), 0.5 * shape.edges.norm()};
-}
-Sphere enclose(const config::CylinderShape& shape) {
-  return {Vec3::Zero(), std::hypot(shape.radius, 0.5 * shape.height)};
-}
-Sphere enclose(const config::CapsuleShape& shape) {
-  return {0.5 * (shape.a + shape.b), 0.5 * (shape.b - shape.a).norm() + shape.radius};
-}
-Sphere enclose(const config::VertexShape& shape) {
-  return planner::geometry::smallest_enclosing_sphere(shape.vertices);
-}
-
-/// A shape in axes of its own as a solid about `center`.
-struct MakeSolid {
-  using Solid = planner::base::Solid;
-  Eigen::Matrix3d axes;
-  Vec3 center;
-
-  std::shared_ptr<const Solid> operator()(const config::SphereShape& /*shape*/) const { return nullptr; }
-  std::shared_ptr<const Solid> operator()(const config::BoxShape& shape) const {
-    return Solid::box(shape.edges, {-center, axes});
-  }
-  std::shared_ptr<const Solid> operator()(const config::CylinderShape& shape) const {
-    return Solid::cylinder(shape.radius, shape.height, {-center, axes});
-  }
-  std::shared_ptr<const Solid> operator()(const config::CapsuleShape& shape) const {
-    return Solid::capsule(shape.radius, axes * shape.a - center, axes * shape.b - center);
-  }
-  std::shared_ptr<const Solid> operator()(const config::VertexShape& shape) const {
-    std::vector<Vec3> vertices;
-    vertices.reserve(shape.vertices.size());
-    for (const Vec3& vertex : shape.vertices) vertices.emplace_back(axes * vertex - center);
-    return Solid::hull(std::move(vertices));
-  }
-};
-
 }  // namespace
-
-Sphere bounding_sphere(const config::Shape& shape) {
-  return std::visit([](const auto& s) { return enclose(s); }, shape);
-}
-
-Sphere bounding_sphere(const config::Obstacle& obstacle) {
-  const Sphere own = bounding_sphere(obstacle.shape);
-  if (obstacle.yaw_rate != 0.0) return {Vec3::Zero(), own.center.norm() + own.radius};
-  return {axes_at(obstacle, 0.0) * own.center, own.radius};
-}
-
-std::shared_ptr<const planner::base::Solid> solid_of(const config::Obstacle& obstacle, const Vec3& center) {
-  const MakeSolid make{axes_at(obstacle, 0.0), center};
-  return std::visit([&](const auto& shape) { return make(shape); }, obstacle.shape);
-}
-
-Eigen::Matrix3d axes_at(const config::Obstacle& obstacle, double t) {
-  if (obstacle.yaw_rate == 0.0 && obstacle.orientation.isZero(0.0)) return Eigen::Matrix3d::Identity();
-  const double yaw = obstacle.orientation[0] + obstacle.yaw_rate * std::max(t, 0.0);
-  return (Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(obstacle.orientation[1], Vec3::UnitY()) *
-          Eigen::AngleAxisd(obstacle.orientation[2], Vec3::UnitX()))
-      .toRotationMatrix();
-}
 
 double distance(const config::Shape& shape, const Vec3& reference, const Vec3& point) {
   return std::visit([&](const auto& s) { return signed_distance(s, point - reference); }, shape);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "config/solids.hpp"
 #include "sim/world/shapes.hpp"
 
 namespace jink::sim::world {
@@ -123,6 +124,13 @@ World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
     bounds_.push_back(bounding_sphere(obstacle));
     solids_.push_back(solid_of(obstacle, bounds_.back().center));
   }
+  for (const config::Obstacle& solid : scenario_.map) bounds_.push_back(bounding_sphere(solid));
+  map_ = config::make_map(scenario_.map);
+}
+
+std::string World::name(int i) const {
+  return i < obstacle_count() ? "obstacle " + std::to_string(id(i))
+                              : "map solid " + std::to_string(id(i - obstacle_count()));
 }
 
 double World::distance(int i, const Vec3& p, double t) const {
@@ -160,6 +168,10 @@ double World::clearance(const Vec3& p, double t, double radius) const {
     if ((p - reference - bound(i).center).norm() - bound(i).radius >= nearest) continue;
     nearest = std::min(nearest, distance(i, p, t));
   }
+  map_->visit({p, p}, nearest, [&](std::size_t solid) {
+    nearest = std::min(nearest, distance(obstacle_count() + static_cast<int>(solid), p, t));
+    return nearest;
+  });
   return nearest - radius;
 }
 
@@ -168,10 +180,15 @@ SweepResult World::sweep(const Vec3& p0, double t0, const Vec3& p1, double t1, d
   const Way way{p0, p1, t0, t1};
   SweepResult result{planner::base::kInfinity, t0, -1};
   double nearest = planner::base::kInfinity;
-  for (int i = 0; i < obstacle_count(); ++i) {
-    if (quick_bound(spec(i), bound(i), way) >= nearest) continue;
+  const auto consider = [&](int i) {
+    if (quick_bound(spec(i), bound(i), way) >= nearest) return;
     if (Search(spec(i), way).lower(nearest, result.t_min)) result.obstacle = i;
-  }
+  };
+  for (int i = 0; i < obstacle_count(); ++i) consider(i);
+  map_->visit({p0.cwiseMin(p1), p0.cwiseMax(p1)}, nearest, [&](std::size_t solid) {
+    consider(obstacle_count() + static_cast<int>(solid));
+    return nearest;
+  });
   result.min_clearance = nearest - radius;
   return result;
 }

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "config/scenario.hpp"
 #include "planner/base/types.hpp"
 #include "planner/geometry/enclosing_sphere.hpp"
+#include "planner/geometry/static_map.hpp"
 #include "sim/world/obstacle_models.hpp"
 
 namespace jink::sim::world {
@@ -19,7 +21,7 @@ namespace jink::sim::world {
 struct SweepResult {
   double min_clearance = planner::base::kInfinity;  ///< m, from the vehicle's sphere to the obstacle's true surface
   double t_min = 0.0;                               ///< scenario time of it; one of several if it is held for a while
-  int obstacle = -1;                                ///< index of that obstacle, -1: there is none
+  int obstacle = -1;                                ///< index of that obstacle or solid, -1: there is none
 };
 
 /// The straight way of a sphere during one step.
@@ -35,7 +37,8 @@ struct SphereSegment {
 
 /// A scenario brought to life. All times are scenario time in seconds; for t < 0 the clock does not run yet and the
 /// obstacles stand at their t = 0 positions. ENU, m. Immutable after construction, so all members are thread safe.
-/// Obstacle indices run from 0 in the order of the scenario file; an index out of range is a programming error.
+/// Obstacle indices run from 0 in the order of the scenario file, and on with the solids of its map, which stand still;
+/// an index out of range is a programming error.
 class World {
  public:
   /// sweep() finds the minimum to within this, in metres.
@@ -47,10 +50,15 @@ class World {
   explicit World(config::Scenario scenario);
 
   [[nodiscard]] const config::Scenario& scenario() const { return scenario_; }
-  [[nodiscard]] int obstacle_count() const { return static_cast<int>(bounds_.size()); }
+  /// How many obstacles there are to be sensed: the solids of the map are none.
+  [[nodiscard]] int obstacle_count() const { return static_cast<int>(scenario_.obstacles.size()); }
+  /// The solids of the map, index obstacle_count() being the first: what is known of the world without sensing.
+  [[nodiscard]] const std::shared_ptr<const planner::geometry::StaticMap>& map() const { return map_; }
 
   /// The identity by which tracks and logs name obstacle `i`: its place in the file, counted from 1.
   [[nodiscard]] static std::uint64_t id(int i) { return static_cast<std::uint64_t>(i) + 1; }
+  /// For people: "obstacle 1" is the first of the file, "map solid 1" the first of the map.
+  [[nodiscard]] std::string name(int i) const;
 
   /// The state of the reference point of obstacle `i`. See state_at().
   [[nodiscard]] ObstacleState obstacle(int i, double t) const;
@@ -93,12 +101,17 @@ class World {
   [[nodiscard]] bool start_blocked() const { return clearance(scenario_.start, 0.0) < 0.0; }
 
  private:
-  [[nodiscard]] const config::Obstacle& spec(int i) const { return scenario_.obstacles[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const config::Obstacle& spec(int i) const {
+    const auto place = static_cast<std::size_t>(i);
+    const std::size_t moving = scenario_.obstacles.size();
+    return place < moving ? scenario_.obstacles[place] : scenario_.map[place - moving];
+  }
   [[nodiscard]] const planner::geometry::Sphere& bound(int i) const { return bounds_[static_cast<std::size_t>(i)]; }
 
   config::Scenario scenario_;
-  std::vector<planner::geometry::Sphere> bounds_;  ///< one per obstacle, relative to its reference point
+  std::vector<planner::geometry::Sphere> bounds_;                    ///< one per index, relative to its reference point
   std::vector<std::shared_ptr<const planner::base::Solid>> solids_;  ///< one per obstacle, about its bound's centre
+  std::shared_ptr<const planner::geometry::StaticMap> map_;
 };
 
 }  // namespace jink::sim::world

@@ -121,7 +121,8 @@ int run(const DoctorOptions& options) {
                            mission.connection, mission.dds_domain));
   auto tracks = std::async(std::launch::async,
                            [&] { return bridge::doctor::inspect_dds(mission, options.seconds, stop.get_token()); });
-  const bridge::doctor::LinkFindings heard = bridge::doctor::listen(*link, clock, options.seconds, stop.get_token());
+  const bridge::doctor::LinkFindings heard =
+      bridge::doctor::listen(*link, clock, options.seconds, stop.get_token(), mission.autopilot_fence);
   Checks checks = bridge::doctor::inspect_link(mission, heard);
   const auto append = [&checks](Checks more) { std::move(more.begin(), more.end(), std::back_inserter(checks)); };
   append(bridge::doctor::inspect_mission(mission, heard));

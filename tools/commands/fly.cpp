@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <list>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <stop_token>
 #include <thread>
+#include <utility>
 
 #include "bridge/base/clock.hpp"
 #include "bridge/companion/companion.hpp"
@@ -14,6 +18,7 @@
 #include "bridge/dds/intents.hpp"
 #include "bridge/dds/px4_link.hpp"
 #include "bridge/dds/tracks.hpp"
+#include "bridge/map/fence.hpp"
 #include "bridge/mavlink/adsb_tracks.hpp"
 #include "bridge/mavsdk/link.hpp"
 #include "bridge/tracking/track_sources.hpp"
@@ -50,7 +55,7 @@ class EventPrinter final : public bridge::companion::FlightObserver {
 nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyOptions& options,
                                       const config::Settings& settings) {
   const bool bounded = mission.geofence.min.allFinite() && mission.geofence.max.allFinite();
-  return {
+  nlohmann::ordered_json header{
       {"mission", mission.name},
       {"seed", options.common.seed},
       {"target", log::vector_json(mission.waypoints.back())},
@@ -60,6 +65,8 @@ nlohmann::ordered_json mission_header(const config::Mission& mission, const FlyO
                                                  {"max", log::vector_json(mission.geofence.max)}}
                         : nullptr},
       {"parameters", log::parameters_of(settings)}};
+  if (!mission.map->tracks().empty()) header["map"] = log::map_json(*mission.map);
+  return header;
 }
 
 /// Turns the loop at the setpoints' rate, and sooner when a track message or a plan has come, until the flight is over;
@@ -155,6 +162,75 @@ struct Transports {
   std::optional<bridge::dds::DdsIntents> intents;
 };
 
+/// Makes the fence that the autopilot keeps a part of the mission's map. Gives back how the flight ends before it
+/// began, where that cannot be done.
+std::optional<bridge::companion::FlightSummary> take_fence(bridge::mavsdk::MavsdkLink& link, config::Mission& mission,
+                                                           cli::BackgroundPrinter& printer) {
+  constexpr double kAutopilotTimeout_s = 30.0;
+  constexpr double kOriginTimeout_s = 60.0;  // a GPS fix takes its time
+  constexpr double kFenceTimeout_s = 5.0;
+  std::stop_source stop;
+  const std::jthread interrupts([&stop](const std::stop_token& end) {
+    while (!end.stop_requested() && !cli::interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stop.request_stop();
+  });
+  bridge::companion::FlightSummary refused;
+  refused.outcome = bridge::supervisor::Outcome::kAborted;
+  refused.reason = "interrupted";
+  if (!link.wait_for_autopilot(kAutopilotTimeout_s, stop.get_token())) {
+    if (stop.stop_requested()) return refused;
+    refused.reason = "waited in vain for an autopilot's heartbeat on " + mission.connection;
+    refused.missing_peer = bridge::supervisor::MissingPeer::kAutopilot;
+    return refused;
+  }
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(kOriginTimeout_s);
+  const auto placed = [&link] { return link.state().origin && link.state().motion.heard(); };
+  while (!placed() && !stop.stop_requested() && std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto items = placed() ? link.read_fence(kFenceTimeout_s, stop.get_token()) : std::nullopt;
+  if (stop.stop_requested()) return refused;
+  if (!items) {
+    refused.reason = placed() ? "the autopilot's fence could not be read within 5 s"
+                              : "waited in vain for the local origin, which the autopilot's fence is placed by";
+    return refused;
+  }
+  if (items->empty()) std::fprintf(stderr, "jink: the autopilot's fence is empty: it bounds nothing\n");
+  try {
+    const bridge::vehicle::VehicleState state = link.state();
+    mission = bridge::map::fenced(mission, *items, *state.origin);
+    if (!bridge::map::fence_of(*items, *state.origin, 0.0, 1.0).holds(state.motion.value.position)) {
+      refused.reason = "the vehicle is outside the autopilot's fence";
+      return refused;
+    }
+  } catch (const std::runtime_error& error) {
+    refused.reason = error.what();
+    return refused;
+  }
+  printer.line(fmt::format("fence: {} items of the autopilot", items->size()));
+  return std::nullopt;
+}
+
+/// Tells how it ended.
+void finish(const FlyOptions& options, const config::Mission& mission, const bridge::companion::FlightSummary& flight,
+            const cli::Printer& printer, const std::unique_ptr<log::FlightLog>& log) {
+  const auto summary = cli::flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
+  cli::write_json(options.common.json, summary);
+  if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) {
+    std::fprintf(stderr, "jink: %s; %s\n", flight.reason.c_str(),
+                 flight.missing_peer == bridge::supervisor::MissingPeer::kAutopilot
+                     ? "start `jink sim SCENARIO`, PX4 SITL, or check the mission's connection"
+                     : "start `jink sim SCENARIO` or your track writer, or check the mission's dds.domain");
+  } else {
+    printer.line(cli::describe_flight(summary));
+  }
+  if (!log) return;
+  log->close();
+  if (options.report.empty()) return;
+  const nlohmann::json plain = summary;
+  report::write_report(options.log, options.report, &plain);
+  printer.line("report: " + std::filesystem::absolute(options.report).string());
+}
+
 int exit_code(const bridge::companion::FlightSummary& flight) {
   if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) return base::kExitMissingPeer;
   return flight.outcome == bridge::supervisor::Outcome::kReached ? base::kExitReached : base::kExitFailed;
@@ -167,7 +243,7 @@ int run(const FlyOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw cli::UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Settings settings = options.common.settings();
-  const config::Mission mission = config::load_mission(options.mission);
+  config::Mission mission = config::load_mission(options.mission);
   cli::catch_signals();
   const bridge::base::SteadyClock clock;
   bridge::base::Notifier notifier;
@@ -183,6 +259,13 @@ int run(const FlyOptions& options) {
                                                         static_cast<std::uint32_t>(mission.system_id));
   } catch (const std::runtime_error& error) {
     throw cli::UsageError(options.mission + ": key 'connection': " + error.what());
+  }
+  if (mission.autopilot_fence) {
+    if (const auto refused = take_fence(*link, mission, *background)) {
+      background.reset();
+      finish(options, mission, *refused, printer, log);
+      return exit_code(*refused);
+    }
   }
   if (!options.log.empty()) {  // an earlier flight's log outlives a mistyped connection
     log = std::make_unique<log::FlightLog>(options.log, mission_header(mission, options, settings));
@@ -200,6 +283,7 @@ int run(const FlyOptions& options) {
   background->line(fmt::format("mission {}: {} waypoint{}, autopilot on {}, tracks on DDS domain {}, seed {}",
                                mission.name, mission.waypoints.size(), mission.waypoints.size() == 1 ? "" : "s",
                                mission.connection, mission.dds_domain, options.common.seed));
+  if (!mission.map->tracks().empty()) background->line(fmt::format("map: {} solids", mission.map->tracks().size()));
   if (const std::string trouble = bridge::dds::discovery_trouble(mission.dds_domain); !trouble.empty())
     background->line("warning: " + trouble);
   run_loop(companion, *link, clock, settings.companion.setpoint_rate_hz, notifier, observers, pilot_texts);
@@ -207,22 +291,7 @@ int run(const FlyOptions& options) {
 
   background.reset();
   const bridge::companion::FlightSummary flight = companion.summary();
-  const auto summary = cli::flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
-  cli::write_json(options.common.json, summary);
-  if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) {
-    std::fprintf(stderr, "jink: %s; %s\n", flight.reason.c_str(),
-                 flight.missing_peer == bridge::supervisor::MissingPeer::kAutopilot
-                     ? "start `jink sim SCENARIO`, PX4 SITL, or check the mission's connection"
-                     : "start `jink sim SCENARIO` or your track writer, or check the mission's dds.domain");
-  } else {
-    printer.line(cli::describe_flight(summary));
-  }
-  if (log) log->close();
-  if (!options.report.empty()) {
-    const nlohmann::json plain = summary;
-    report::write_report(options.log, options.report, &plain);
-    printer.line("report: " + std::filesystem::absolute(options.report).string());
-  }
+  finish(options, mission, flight, printer, log);
   return exit_code(flight);
 }
 

@@ -128,6 +128,9 @@ int run(PlanOptions options) {
   config::Settings settings = options.common.settings();
   const config::Scenario scenario = config::load_scenario(options.scenario);
   const bool paper = options.mode == "paper";
+  if (paper && !scenario.map.empty())
+    throw cli::UsageError("--mode: Value paper not with " + options.scenario +
+                          ", which has a map: the paper knows spheres");
   const Knobs k = knobs(settings, paper);
   apply(options, k);
 
@@ -165,15 +168,19 @@ int run(PlanOptions options) {
                                         {"evaluations", plan.evaluations},
                                         {"planning_time_s", seconds},
                                         {"front", front}});
+  if (!scenario.map.empty()) printer.line(fmt::format("map: {} solids", scenario.map.size()));
   printer.line(fmt::format("scenario {}: {} ({} mode, {}, seed {}, {} threads)", scenario.name, outcome, options.mode,
                            options.algorithm, options.common.seed, pool.threads()));
   printer.line(fmt::format("  path {:.3f} m of straight {:.3f} m (SLR {:.5f}), flight time {:.2f} s, {} points", length,
                            straight, slr, flight_time, plan.path.size()));
   const bool obstacles = std::isfinite(plan.verification.min_clearance);
+  constexpr std::uint64_t kMap = planner::geometry::StaticMap::kFirstId;
+  const std::uint64_t nearest = plan.verification.nearest_id;
   printer.line(
       fmt::format("  smallest clearance {}; {} evaluations in {:.1f} ms",
-                  obstacles ? fmt::format("{:.3f} m at t = {:.2f} s, to obstacle {}", plan.verification.min_clearance,
-                                          plan.verification.t_min_clearance, plan.verification.nearest_id)
+                  obstacles ? fmt::format("{:.3f} m at t = {:.2f} s, to {} {}", plan.verification.min_clearance,
+                                          plan.verification.t_min_clearance, nearest >= kMap ? "map solid" : "obstacle",
+                                          nearest >= kMap ? nearest - kMap + 1 : nearest)
                             : "unlimited, no obstacles",
                   plan.evaluations, 1e3 * seconds));
   return outcome == "reached" ? base::kExitReached : base::kExitFailed;

@@ -52,6 +52,7 @@ int replay_scenario(const ReplayOptions& options) {
   if (!options.report.empty() && options.log.empty())
     throw cli::UsageError("--report: needs --log FILE.jsonl, from which it is made");
   const config::Scenario scenario = config::load_scenario(options.scenario);
+  if (!scenario.map.empty()) printer.line(fmt::format("map: {} solids", scenario.map.size()));
   sim::flight::ClosedLoopOptions loop;
   loop.seed = options.common.seed;
   loop.threads = options.common.thread_count();

@@ -224,13 +224,15 @@ nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const
 }
 
 void introduce(const config::Scenario& scenario, const SimOptions& options, cli::BackgroundPrinter& printer) {
-  printer.line(fmt::format("scenario {}: {} obstacles{}, seed {}", scenario.name, scenario.obstacles.size(),
-                           options.no_tracks ? ", not published"
-                                             : fmt::format(" as {} on DDS domain {}",
-                                                           bridge::dds::track_topic(bridge::dds::TrackFormat::kJink,
-                                                                                    options.tracks_namespace),
-                                                           options.domain),
-                           options.common.seed));
+  printer.line(
+      fmt::format("scenario {}: {} obstacles{}{}, seed {}", scenario.name, scenario.obstacles.size(),
+                  scenario.map.empty() ? std::string() : fmt::format(", a map of {} solids", scenario.map.size()),
+                  options.no_tracks
+                      ? ", not published"
+                      : fmt::format(" as {} on DDS domain {}",
+                                    bridge::dds::track_topic(bridge::dds::TrackFormat::kJink, options.tracks_namespace),
+                                    options.domain),
+                  options.common.seed));
   const int vehicles = options.no_vehicle ? 0 : 1 + static_cast<int>(scenario.vehicles.size());
   for (int i = options.instance; i < options.instance + vehicles; ++i) {
     printer.line(

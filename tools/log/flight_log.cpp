@@ -220,6 +220,10 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
     line_.close('}');
   }
   line_.close(']');
+  if (const auto& [map, where, up, floor, sigma] = job.map; map != nullptr && !map->tracks().empty()) {
+    line_.key("map").open('{').key("where").open('[').exact_vector(where.min).exact_vector(where.max).close(']');
+    line_.key("up").exact(up).key("floor").exact(floor).key("sigma").exact(sigma).close('}');
+  }
   add_points("previous", job.previous);
   line_.close('}');
 }
@@ -289,6 +293,31 @@ void FlightLog::write_content(double t, const Truth& truth) {
     line_.key("p").vector(truth.spheres[i].center).key("radius").number(truth.spheres[i].radius);
     end_line();
   }
+}
+
+nlohmann::ordered_json map_json(const planner::geometry::StaticMap& map) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const planner::base::Track& track : map.tracks()) {
+    const Vec3& p = track.position;
+    nlohmann::ordered_json entry{p.x(), p.y(), p.z(), track.radius};
+    if (const planner::base::Solid* solid = track.body.solid.get(); solid != nullptr) {
+      nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
+      const auto put_all = [&](const Vec3& v) {
+        for (const double x : v) numbers.push_back(x);
+      };
+      for (const Vec3& vertex : solid->vertices()) put_all(vertex);
+      if (!solid->is_hull()) {
+        put_all(solid->half());
+        numbers.push_back(solid->corner());
+        numbers.push_back(solid->rounding());
+        put_all(solid->pose().center);
+        for (Eigen::Index axis = 0; axis < 3; ++axis) put_all(solid->pose().axes.col(axis));
+      }
+      entry.push_back({{solid->is_hull() ? "hull" : "prism", std::move(numbers)}});
+    }
+    all.push_back(std::move(entry));
+  }
+  return all;
 }
 
 nlohmann::ordered_json parameters_of(const config::Settings& settings) {

@@ -35,7 +35,9 @@ struct FlightLogOptions {
 /// header {type, format, scenario|mission, seed, version, parameters, ...; of a scenario `shapes`: [{id, box:
 /// edges}|{id, cylinder: {radius, height}}|{id, capsule: {radius, a, b}}|{id, vertices}, ...], each with `orientation`
 /// and `yaw_rate` where it has them, of the obstacles that are no spheres, about the `p` of their `obstacles` records,
-/// and, where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with
+/// of the map, where there is one, `map`: [[x, y, z, radius, and of what is no sphere {prism} or {hull} as below], ...]
+/// in the map's order; and, where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0};
+/// then, each with
 /// `type` and `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where
 /// it has several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks
 /// {tracks:
@@ -52,6 +54,7 @@ struct FlightLogOptions {
 /// radius, position_sigma, velocity_sigma, plain_until, bounces: [begin, velocity, min, max] or swings: [frequency,
 /// terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin, position_sigma,
 /// velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other vehicles (planner::KnownPath),
+/// map: {where: [min, max], up, floor, sigma}, what of the header's map was in view (bridge::companion::MapView), and
 /// previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times from there on. A number in it that
 /// is not finite is the text "inf", "-inf" or "nan". With the header's seed and parameters the plan can be made again
 /// (tools/log/flight_replay.hpp).
@@ -134,6 +137,9 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
 
 /// [x, y, z].
 nlohmann::ordered_json vector_json(const Vec3& v);
+
+/// The header's `map`.
+nlohmann::ordered_json map_json(const planner::geometry::StaticMap& map);
 
 /// The header's `parameters`: every setting by its key.
 nlohmann::ordered_json parameters_of(const config::Settings& settings);

@@ -126,6 +126,25 @@ planner::base::Track track_of(const Json& item) {
           item.size() > kNumbers ? body_of(item[kNumbers], x[9]) : planner::base::Body()};
 }
 
+/// The header's map; none where it has none.
+std::shared_ptr<const planner::geometry::StaticMap> map_of(const Json& header) {
+  if (!header.contains("map")) return nullptr;
+  std::vector<planner::base::Track> tracks;
+  for (const Json& item : list_of(header, "map")) {
+    constexpr std::size_t kNumbers = 4;  // and a solid, where it has one
+    if (!item.is_array() || item.size() != kNumbers + 1) check_list(item, "map", kNumbers);
+    planner::base::Track track;
+    track.position = {exact(item[0], "map"), exact(item[1], "map"), exact(item[2], "map")};
+    track.radius = exact(item[3], "map");
+    if (item.size() > kNumbers) {
+      if (!item[kNumbers].is_object()) refuse("\"map\" holds a solid that is no object");
+      track.body.solid = solid_of(item[kNumbers]);
+    }
+    tracks.push_back(std::move(track));
+  }
+  return std::make_shared<const planner::geometry::StaticMap>(std::move(tracks));
+}
+
 planner::geometry::KnownPath known_path_of(const Json& item) {
   planner::geometry::KnownPath path;
   path.id = count_of(item, "id");
@@ -198,6 +217,17 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
   for (const Json& item : list_of(from, "forecasts")) job.forecasts.push_back(forecast_of(item, job.tracks.size()));
   for (const Json& item : list_of(from, "paths")) job.paths.push_back(known_path_of(item));
+  if (from.contains("map")) {
+    const Json& view = member(from, "map");
+    const Json& where = member(view, "where");
+    check_list(where, "where", 2);
+    job.map.where = {exact_vector(where[0], "where"), exact_vector(where[1], "where")};
+    job.map.up = exact(member(view, "up"), "up");
+    job.map.floor = exact(member(view, "floor"), "floor");
+    job.map.sigma = exact(member(view, "sigma"), "sigma");
+    if (!std::isfinite(job.map.up) || !planner::geometry::is_amount(job.map.sigma))
+      refuse("\"map\" holds a height or a standard deviation that is none");
+  }
   job.previous = path_of(from, "previous");
   return job;
 }
@@ -245,6 +275,7 @@ FlightRecording::FlightRecording(const std::filesystem::path& log) : lines_(log)
     version_ = text_of(header, "version");
     if (header.contains("pilot")) pilot_ = text_of(header, "pilot");
     seed_ = count_of(header, "seed");
+    map_ = map_of(header);
     const Json& parameters = member(header, "parameters");
     if (!parameters.is_object()) refuse("\"parameters\" is not an object");
     for (const auto& [key, value] : parameters.items()) parameters_.push_back({key, text_of(parameters, key.c_str())});
@@ -270,6 +301,7 @@ std::optional<RecordedPlan> FlightRecording::next() {
       plan.line = lines_.line();
       plan.t = number_of(record, "t");
       plan.job = job_of(record, *from);
+      plan.job.map.map = map_;
       plan.searches = searches_of(record);
       plan.status = status_of(record);
       plan.path = path_of(record, "path");

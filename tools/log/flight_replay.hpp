@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +57,7 @@ class FlightRecording {
   std::string pilot_ = "jink";
   std::uint64_t seed_ = 1;
   std::vector<config::SettingText> parameters_;
+  std::shared_ptr<const planner::geometry::StaticMap> map_;  // the header's; each plan shares it
   std::size_t without_inputs_ = 0;
   std::size_t unknown_ = 0;
 };

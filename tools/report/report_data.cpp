@@ -311,6 +311,7 @@ Json report_data(const FlightData& flight, const Json* summary) {
   Json data;
   data["header"] = flight.header;
   data["header"].erase("shapes");
+  data["header"].erase("map");
   data["log"] = {{"lines", flight.lines},
                  {"cut_off", flight.cut_off},
                  {"not_finite", flight.not_finite},

@@ -31,9 +31,8 @@ std::array<std::string, 2> first_lines(const std::filesystem::path& file) {
   return lines;
 }
 
-std::filesystem::path fly(const support::Folder& folder, const std::string& scenario_name, int threads) {
-  const auto file = folder.path() / (scenario_name + std::to_string(threads) + ".jsonl");
-  const auto scenario = config::load_scenario(config::config_folder() / "scenarios" / (scenario_name + ".yaml"));
+std::filesystem::path fly(const support::Folder& folder, const config::Scenario& scenario, int threads) {
+  const auto file = folder.path() / (scenario.name + std::to_string(threads) + ".jsonl");
   const config::Settings settings;
   FlightLog log(file, cli::scenario_header(scenario, 5, settings), {.wait = true});
   sim::flight::ClosedLoopOptions options;
@@ -59,6 +58,10 @@ FlightComparison compare(const std::filesystem::path& log, int threads = 2,
   return compare_plans(recording, settings);
 }
 
+std::filesystem::path fly(const support::Folder& folder, const std::string& scenario_name, int threads) {
+  return fly(folder, config::load_scenario(config::config_folder() / "scenarios" / (scenario_name + ".yaml")), threads);
+}
+
 TEST(FlightReplay, ARecordedFlightDecidesTheSameAtAnyNumberOfThreads) {
   const support::Folder folder;
   for (const int flown : {1, 4}) {
@@ -69,6 +72,34 @@ TEST(FlightReplay, ARecordedFlightDecidesTheSameAtAnyNumberOfThreads) {
       EXPECT_TRUE(comparison.differences.empty()) << flown << " threads, again with " << threads;
     }
   }
+}
+
+// The map is in the log once, and each plan tells what it saw of it.
+TEST(FlightReplay, AFlightByAMapDecidesTheSame) {
+  const support::Folder folder;
+  auto scenario = config::load_scenario(config::config_folder() / "scenarios" / "crossing.yaml");
+  scenario.map = {{config::BoxShape{{1, 5, 3}}, config::LinearMotion{{10, 1, 1.5}}, {0.4, 0, 0}},
+                  {config::SphereShape{0.7}, config::LinearMotion{{14, -1, 2}}},
+                  {config::VertexShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 4}}}, config::LinearMotion{{6, -2, 0}}},
+                  {config::BoxShape{{1, 5, 3}}, config::LinearMotion{{500, 1, 1.5}}}};
+  const auto log = fly(folder, scenario, 2);
+  const FlightComparison comparison = compare(log);
+  EXPECT_GT(comparison.plans, 20U);
+  EXPECT_TRUE(comparison.differences.empty());
+  FlightRecording recording(log);
+  const auto plan = recording.next();
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->job.map.map->tracks().size(), 4U);
+  std::vector<planner::base::Track> seen;
+  plan->job.map.append_to(seen);
+  EXPECT_EQ(seen.size(), 3U);
+  // Without it, it is another world.
+  const std::string text = support::read(log);
+  const std::size_t begin = text.find("\"map\":[[");
+  const std::size_t end = text.find("\"parameters\"");
+  ASSERT_LT(begin, end);
+  const auto without = folder.write("without.jsonl", text.substr(0, begin) + text.substr(end));
+  EXPECT_FALSE(compare(without).differences.empty());
 }
 
 TEST(FlightReplay, OtherParametersDecideOtherwise) {

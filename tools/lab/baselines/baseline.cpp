@@ -22,6 +22,7 @@ void BaselineTask::start(bridge::companion::PlanJob job) {
   assert(!result_);
   bridge::companion::PlanResult& result = result_.emplace();
   result.job = std::move(job);
+  result.job.map.append_to(result.job.tracks);
   result.job.request.tracks = result.job.tracks;
   result.job.request.paths = result.job.paths;
   if (planner::horizon::is_valid(result.job.request)) result.plan = baseline_->plan(result.job);
