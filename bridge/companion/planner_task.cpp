@@ -11,7 +11,8 @@ namespace {
 
 // What climbs and what stops has nowhere to go.
 void lead(planner::horizon::Guide& guide, PlanJob& job) {
-  if (job.goal == Goal::Kind::kWaypoint) guide.lead(job.request, job.start);
+  if (job.goal == Goal::Kind::kWaypoint)
+    guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
 }
 
 }  // namespace

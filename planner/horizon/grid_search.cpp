@@ -7,8 +7,8 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kWeight = 1.2;   // of the estimate of what is left: a way may be longer by that, and is found sooner
-constexpr double kNarrow = 10.0;  // times its length, that a way costs more where only the least is kept
+constexpr double kWeight = 1.2;     // of the estimate of what is left: a way may be longer by that, and is found sooner
+constexpr double kNarrow = 10.0;    // times its length, that a way costs more where only the least is kept
 constexpr int kFarthest = 1 << 19;  // cells from the target, either way
 
 std::uint64_t key(const Eigen::Vector3i& place) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shortest way on a grid among what stands (A*, Hart, Nilsson and Raphael 1968, with a weighted estimate, Pohl 1970),
-// a part at a time.
+// The shortest way on a grid among what stands (A*, Hart, Nilsson and Raphael 1968, with a weighted estimate, Pohl
+// 1970), a part at a time.
 #pragma once
 
 #include <Eigen/Core>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "planner/geometry/static_map.hpp"
@@ -16,16 +15,18 @@ constexpr double kAtRest = 0.1;         // m/s, up to which something rests
 constexpr double kSettled = 1.0;        // s, for which it has rested to stand
 constexpr double kRemembered = 60.0;    // s, since it was seen
 constexpr double kTheSame = 0.3;        // m, that it may move meanwhile
-constexpr double kSigmas = 1.0;          // of its position, that something counts as larger
+constexpr double kSigmas = 1.0;         // of its position, that something counts as larger
 constexpr double kFineGrid = 0.5;       // times the cell, where a coarse grid has no way
 constexpr double kSearchAgain = 2.0;    // s, after a search that found none
-constexpr double kNarrower = 0.05;         // m, by which a way may get narrower until another is looked for
+constexpr double kNarrower = 0.05;      // m, by which a way may get narrower until another is looked for
+constexpr double kCutOff = 0.3;         // m, of the way, that need not be in sight
 constexpr double kRoom = 0.1;           // m, beside the middle of a narrow place, for the vehicle to pass it
 constexpr double kStrayed = 2.5;        // m, from the way, where it is looked for anew
+constexpr double kTied = 1e-9;          // m: of two legs that are as near the later one counts
 constexpr double kAhead = 5.0;          // m, along the way, that a vehicle may have gone since
 constexpr double kSlowDownAhead = 4.0;  // m, of a narrow place
 constexpr double kSample = 0.25;        // m, along a way
-constexpr double kSlowestShare = 0.3;        // of the cruise speed, in the narrowest place
+constexpr double kSlowestShare = 0.3;   // of the cruise speed, in the narrowest place
 constexpr double kGain = 0.5;           // m, of the way, in
 constexpr double kPatience = 4.0;       // s, by a vehicle that is not stuck
 constexpr int kHalvings = 6;            // of a leg, to the farthest place in sight
@@ -48,11 +49,16 @@ bool rests(const base::Track& track) {
   return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + 2.0 * track.velocity_sigma;
 }
 
+/// The guide knows all of the map, the request what is near.
+bool is_mapped(const base::Track& track) {
+  return track.id >= geometry::StaticMap::kFirstId;
+}
+
 }  // namespace
 
-void Guide::lead(PathRequest& request, double now) {
+void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   if (!settings_.guide || !is_valid(request)) return;
-  notice(request, now);
+  notice(request, now, map);
   if ((request.target - target_).squaredNorm() > 0.0) {
     target_ = request.target;
     way_.clear();
@@ -77,40 +83,40 @@ void Guide::lead(PathRequest& request, double now) {
 }
 
 // What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
-void Guide::notice(const PathRequest& request, double now) {
+void Guide::notice(const PathRequest& request, double now, const MapPlace& map) {
   if (knowledge_ == Knowledge::kWhole) {
     std::vector<base::Track> standing;
-    std::copy_if(request.tracks.begin(), request.tracks.end(), std::back_inserter(standing), rests);
-    stand(standing);
+    for (const base::Track& track : request.tracks)
+      if (!is_mapped(track) && rests(track)) standing.push_back(track);
+    stand(standing, map);
     return;
   }
   double sight = 0.0;
   for (const base::Track& track : request.tracks) {
-    const bool is_mapped = track.id >= geometry::StaticMap::kFirstId;
-    if (!is_mapped) sight = std::max(sight, (track.position - request.position).norm());
+    if (is_mapped(track)) continue;
+    sight = std::max(sight, (track.position - request.position).norm());
     const auto known = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& s) { return s.track.id == track.id; });
     if (!rests(track)) {
       if (known != seen_.end()) seen_.erase(known);
     } else if (known == seen_.end()) {
-      seen_.push_back({track, is_mapped ? now - kSettled : now, now});
+      seen_.push_back({track, now, now});
     } else {
       const bool moved = (known->track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
       *known = {track, moved ? now : known->since, now};
     }
   }
   std::erase_if(seen_, [&](const Seen& s) {
-    return s.last < now &&
-           (now - s.last > kRemembered || (s.track.position - request.position).norm() < sight);
+    return s.last < now && (now - s.last > kRemembered || (s.track.position - request.position).norm() < sight);
   });
   std::vector<base::Track> standing;
   for (const Seen& s : seen_)
     if (now - s.since >= kSettled) standing.push_back(s.track);
-  stand(standing);
+  stand(standing, map);
 }
 
-void Guide::stand(std::span<const base::Track> standing) {
-  standing_.set(standing, kSigmas);
-  sigma_ = 0.0;
+void Guide::stand(std::span<const base::Track> standing, const MapPlace& map) {
+  standing_.set(standing, map, kSigmas);
+  sigma_ = map.sigma;
   for (const base::Track& track : standing) sigma_ = std::max(sigma_, track.position_sigma);
 }
 
@@ -119,12 +125,16 @@ void Guide::look_for_way(const PathRequest& request, double now) {
   if (now < search_again_) return;
   const double wanted = std::max(request.margin, settings_.guide_margin) + settings_.seed_clearance;
   const base::VehicleLimits& vehicle = request.vehicle;
-  const GridQuery query{request.position,       request.target, request.volume,
-                        vehicle.radius,         settings_.guide_margin, wanted,
-                        vehicle.cruise_speed / vehicle.max_climb, settings_.guide_cell};
+  const GridQuery query{request.position,
+                        request.target,
+                        request.volume,
+                        vehicle.radius,
+                        settings_.guide_margin,
+                        wanted,
+                        vehicle.cruise_speed / vehicle.max_climb,
+                        settings_.guide_cell};
   if (search_.state() != GridSearch::State::kSearching) search_.begin(query);
-  const int places =
-      knowledge_ == Knowledge::kWhole ? std::numeric_limits<int>::max() : settings_.guide_places;
+  const int places = knowledge_ == Knowledge::kWhole ? std::numeric_limits<int>::max() : settings_.guide_places;
   GridSearch::State state = search_.advance(standing_, places);
   if (state == GridSearch::State::kNone && search_.query().cell == settings_.guide_cell) {
     GridQuery fine = query;
@@ -186,7 +196,7 @@ bool Guide::pass(const Vec3& position) {
     const double squared = along.squaredNorm();
     const double share = squared > 0.0 ? std::clamp((position - way_[i - 1]).dot(along) / squared, 0.0, 1.0) : 0.0;
     const Vec3 place = way_[i - 1] + share * along;
-    if ((place - position).norm() < least) {
+    if ((place - position).norm() <= least + kTied) {
       least = (place - position).norm();
       leg = i;
       nearest = place;
@@ -219,16 +229,19 @@ void Guide::slow_down(PathRequest& request) const {
   request.vehicle.cruise_speed *= share;
 }
 
-// To the farthest place on the way in sight, or so that what is cut off the way is small. Returns the end of its leg.
+// To the target, where the way goes hardly aside of the straight line; else to the farthest place on it in sight, or
+// nearly. Returns the end of its leg.
 std::size_t Guide::lead_ahead(PathRequest& request) const {
   const double kept = request.vehicle.radius + request.margin;
+  const auto is_aside = [&](std::size_t leg, const Vec3& place, double most) {
+    return std::any_of(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg),
+                       [&](const Vec3& corner) { return distance_to_line(corner, request.position, place) > most; });
+  };
   const auto is_near = [&](std::size_t leg, const Vec3& place) {
-    bool near = true;
-    for (std::size_t i = 1; near && i < leg; ++i)
-      near = distance_to_line(way_[i], request.position, place) <= settings_.guide_deviation;
-    return near || standing_.is_clear(request.position, place, kept);
+    return !is_aside(leg, place, kCutOff) || standing_.is_clear(request.position, place, kept);
   };
   std::size_t leg = way_.size() - 1;
+  if (!is_aside(leg, way_[leg], settings_.guide_deviation)) return leg;
   while (leg > 1 && !is_near(leg, way_[leg])) --leg;
   if (leg + 1 == way_.size()) return leg;
   // Somewhere on the next leg.

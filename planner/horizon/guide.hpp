@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way through what stands: round houses, through doors, out of dead ends. It says where to plan to; what is flown is
-// planned and verified as ever. What moves is not looked at here.
+// The way through what stands: round houses, through doors, out of dead ends. It says where to plan to; what is flown
+// is planned and verified as ever. What moves is not looked at here.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +30,9 @@ class Guide {
   /// Where the straight way to the target leads through what stands, and the way round goes farther from it than
   /// settings.guide_deviation, `target` becomes a place on that way, in sight or nearly. Where the way is narrower than
   /// the margin, that is as small as it has to be, at least settings.guide_margin, and the vehicle as much slower.
-  /// `now`: s, in a clock that goes on. Looks at settings.guide_places places of the grid at most, so that a way may be
-  /// found some calls later.
-  void lead(PathRequest& request, double now);
+  /// `now`: s, in a clock that goes on. `map` stands too, all of it. Looks at settings.guide_places places of the grid
+  /// at most, so that a way may be found some calls later.
+  void lead(PathRequest& request, double now, const MapPlace& map = {});
 
   /// The way that is led along, from beside the vehicle to the target; empty: straight on. ENU, m.
   [[nodiscard]] std::span<const Vec3> way() const { return way_; }
@@ -43,8 +43,8 @@ class Guide {
     base::Track track;
     double since = 0.0, last = 0.0;
   };
-  void notice(const PathRequest& request, double now);
-  void stand(std::span<const base::Track> standing);
+  void notice(const PathRequest& request, double now, const MapPlace& map);
+  void stand(std::span<const base::Track> standing, const MapPlace& map);
   void look_for_way(const PathRequest& request, double now);
   [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const;
   [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
@@ -60,10 +60,10 @@ class Guide {
   double sigma_ = 0.0;  // m, the largest standard deviation of their positions
   GridSearch search_;
   std::vector<Vec3> way_;
-  Vec3 target_ = Vec3::Zero();      // of the flight
-  double search_again_ = 0.0;       // s, when, after one that found none
+  Vec3 target_ = Vec3::Zero();           // of the flight
+  double search_again_ = 0.0;            // s, when, after one that found none
   double least_left_ = base::kInfinity;  // m, of the way
-  double gained_at_ = 0.0;          // s
+  double gained_at_ = 0.0;               // s
 };
 
 }  // namespace jink::planner::horizon

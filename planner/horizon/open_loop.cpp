@@ -100,7 +100,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
       paths[i].until = at_start.until - t;
     }
     PathRequest led = from;
-    guide.lead(led, t);
+    guide.lead(led, t, {request.map});
     verify::Plan part = planner.plan(led, previous, seed, number, budget, pool);
     if (part.status == verify::PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;

@@ -4,13 +4,18 @@
 // since the last one (ms), a message's name and its fields as JSON.
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
+#include "bridge/map/fence.hpp"
 #include "bridge/mavlink/adsb_tracks.hpp"
 #include "bridge/mavlink/autopilot_telemetry.hpp"
 #include "bridge/mavlink/messages.hpp"
 #include "bridge/tracking/track_inbox.hpp"
 #include "bridge/vehicle/command_tracker.hpp"
+#include "config/solids.hpp"
+#include "planner/geometry/validity.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {
@@ -21,6 +26,7 @@ using jink::fuzz::require;
 
 constexpr double kLongestWait_ms = 1e7;
 constexpr std::size_t kLongestNotice = 600;
+constexpr std::size_t kMostItems = 24;
 
 class TheClock final : public jink::bridge::base::Clock {
  public:
@@ -70,6 +76,11 @@ class Companion {
     report_ = message;
     report_->received = clock_.now();
   }
+  void on(const mavlink::MissionCount& /*message*/) { fence_.clear(); }
+  void on(const mavlink::MissionItem& message) {
+    if (fence_.size() < kMostItems) fence_.push_back(message);
+    check_fence();
+  }
   template <typename Other>
   void on(const Other& message) {
     telemetry_.on(message);
@@ -93,6 +104,16 @@ class Companion {
     }
   }
 
+  // A fence is solids to plan among, or none.
+  void check_fence() const {
+    try {
+      for (const auto& solid : jink::bridge::map::fence_of(fence_, {47.4, 8.5, 488.0}, -10.0, 100.0).solids)
+        require(jink::planner::geometry::is_valid(jink::config::track_at_rest(solid)), "a wall that is none");
+    } catch (const std::runtime_error& refused) {
+      require(printable(refused.what()), "a refusal that is not printable");
+    }
+  }
+
   void check_aircraft() {
     jink::bridge::tracking::TrackMessage message;
     while (aircraft_.poll(message)) {
@@ -106,6 +127,7 @@ class Companion {
   jink::bridge::mavlink::AutopilotTelemetry telemetry_;
   jink::bridge::vehicle::CommandTracker commands_;
   std::optional<AdsbReport> report_;
+  std::vector<mavlink::MissionItem> fence_;
   jink::bridge::mavlink::AdsbTracks aircraft_{[this](AdsbReport& report) {
                                                 if (!report_) return false;
                                                 report = *report_;

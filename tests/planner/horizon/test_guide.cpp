@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/guide.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "planner/base/solid.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr double kVehicle = 0.3;
+constexpr double kKept = 0.35;
+
+base::Track box(const Vec3& center, const Vec3& edges) {
+  base::Track track;
+  track.position = center;
+  track.body.solid = base::Solid::box(edges, {});
+  track.radius = track.body.solid->reach();
+  return track;
+}
+
+/// A wall across at x, higher than the volume, with a door of some width about y.
+std::vector<base::Track> wall(double x, double y, double width) {
+  const double left = 20.0 - (y + 0.5 * width);
+  const double right = 20.0 + (y - 0.5 * width);
+  return {box({x, 20.0 - 0.5 * left, 4}, {0.2, left, 12}), box({x, -20.0 + 0.5 * right, 4}, {0.2, right, 12})};
+}
+
+std::vector<base::Track> numbered(std::vector<base::Track> tracks) {
+  for (std::size_t i = 0; i < tracks.size(); ++i) tracks[i].id = i + 1;
+  return tracks;
+}
+
+/// Three walls: in front, to the left, to the right.
+std::vector<base::Track> dead_end() {
+  return numbered({box({10, 0, 4}, {0.2, 8, 12}), box({6, 4, 4}, {8, 0.2, 12}), box({6, -4, 4}, {8, 0.2, 12})});
+}
+
+PathRequest guide_request(const std::vector<base::Track>& tracks, const Vec3& position = {8, 0, 2}) {
+  PathRequest request;
+  request.position = position;
+  request.target = {20, 0, 2};
+  request.volume = {{-10, -20, 0}, {30, 20, 8}};
+  request.margin = kKept;
+  request.tracks = tracks;
+  return request;
+}
+
+double clearance_of(const std::vector<base::Track>& tracks, const Vec3& from, const Vec3& to) {
+  Standing standing;
+  standing.set(tracks, {}, 0.0);
+  double least = 100.0;
+  for (int i = 0; i <= 1000; ++i) least = std::min(least, standing.distance(from + i / 1000.0 * (to - from), 100.0));
+  return least - kVehicle;
+}
+
+TEST(Standing, KnowsTheDistanceToSpheresSolidsAndTheMap) {
+  base::Track ball;
+  ball.position = {0, 0, 0};
+  ball.radius = 1.0;
+  const geometry::StaticMap map({box({0, 10, 0}, {2, 2, 2})});
+  Standing standing;
+  EXPECT_TRUE(standing.empty());
+  const std::vector<base::Track> tracks{ball, box({10, 0, 0}, {2, 4, 2})};
+  standing.set(tracks, {&map, 1.0}, 0.0);
+  EXPECT_FALSE(standing.empty());
+  EXPECT_NEAR(standing.distance({-3, 0, 0}, 50.0), 2.0, 1e-12);
+  EXPECT_NEAR(standing.distance({-3, 0, 0}, 1.5), 1.5, 1e-12) << "no farther than asked for";
+  EXPECT_NEAR(standing.distance({10, 5, 0}, 50.0), 3.0, 1e-12);
+  EXPECT_NEAR(standing.distance({0, 10, 4}, 50.0), 2.0, 1e-12) << "the map is 1 m higher here";
+  EXPECT_NEAR(standing.distance({0, 0, 0}, 50.0), -1.0, 1e-12);
+  // Through the gap between the ball (from x = 1) and the box (to x = 9).
+  EXPECT_TRUE(standing.is_clear({5, -9, 0}, {5, 9, 0}, 3.9));
+  EXPECT_FALSE(standing.is_clear({5, -9, 0}, {5, 9, 0}, 4.1));
+  // What is uncertain counts as larger; what is no higher than the floor is the ground.
+  std::vector<base::Track> blurred = tracks;
+  blurred[0].position_sigma = 0.2;
+  standing.set(blurred, {&map, 0.0, 1.0, 0.3}, 2.0);
+  EXPECT_NEAR(standing.distance({-3, 0, 0}, 50.0), 1.6, 1e-12);
+  EXPECT_GT(standing.distance({0, 10, 2}, 50.0), 5.0);
+}
+
+TEST(GridSearch, FindsTheWayRoundAndSaysWhereThereIsNone) {
+  const std::vector<base::Track> tracks = dead_end();
+  Standing standing;
+  standing.set(tracks, {}, 0.0);
+  GridSearch search;
+  EXPECT_EQ(search.advance(standing, 10), GridSearch::State::kIdle);
+  GridQuery query{{8, 0, 2}, {20, 0, 2}, {{-10, -20, 0}, {30, 20, 3.5}}, kVehicle, 0.1, 0.55, 1.5, 0.5};
+  search.begin(query);
+  int calls = 0;
+  while (search.advance(standing, 100) == GridSearch::State::kSearching) ++calls;
+  EXPECT_GT(calls, 3);
+  ASSERT_EQ(search.state(), GridSearch::State::kFound);
+  const std::vector<Vec3> way = search.way();
+  EXPECT_EQ(way.front(), query.from);
+  EXPECT_EQ(way.back(), query.to);
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    length += (way[i] - way[i - 1]).norm();
+    EXPECT_GE(clearance_of(tracks, way[i - 1], way[i]), 0.1 - 1e-9);
+  }
+  // Back out at x = 2, round a corner at y = 4: the shortest goes by (2 - c, 4 + c) and (10 + c, 4 + c).
+  EXPECT_GT(length, 7.2 + 8.0 + 10.7);
+  EXPECT_LT(length, 1.25 * (7.2 + 8.0 + 10.7) + 4.0);
+  // The same in one go.
+  GridSearch whole;
+  whole.begin(query);
+  EXPECT_EQ(whole.advance(standing, std::numeric_limits<int>::max()), GridSearch::State::kFound);
+  EXPECT_EQ(whole.way(), way);
+
+  std::vector<base::Track> closed = tracks;
+  closed.push_back(box({2, 0, 4}, {0.2, 8.2, 12}));
+  standing.set(closed, {}, 0.0);
+  whole.begin(query);
+  EXPECT_EQ(whole.advance(standing, std::numeric_limits<int>::max()), GridSearch::State::kNone);
+}
+
+TEST(Guide, LeadsStraightOnWhereNothingStandsInTheWay) {
+  std::vector<base::Track> tracks = numbered({box({10, 8, 2}, {1, 1, 1}), box({10, 0, 2}, {1, 1, 1})});
+  tracks[1].velocity = {0, 2, 0};  // moves: the plans' affair
+  PathRequest request = guide_request(tracks);
+  Guide guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  EXPECT_EQ(request.target, Vec3(20, 0, 2));
+  EXPECT_EQ(request.margin, kKept);
+  EXPECT_TRUE(request.way.empty());
+  EXPECT_TRUE(guide.way().empty());
+}
+
+TEST(Guide, LeadsOutOfADeadEndToPlacesInSight) {
+  const std::vector<base::Track> tracks = dead_end();
+  Guide guide({}, Guide::Knowledge::kWhole);
+  Vec3 position(8, 0, 2);
+  double flown = 0.0;
+  for (int n = 0; n < 400 && (position - Vec3(20, 0, 2)).norm() > 0.5; ++n) {
+    PathRequest request = guide_request(tracks, position);
+    request.visit = true;
+    guide.lead(request, 0.1 * n);
+    const Vec3 way = request.way.empty() ? Vec3(request.target - position) : Vec3(request.way.front() - position);
+    EXPECT_TRUE(request.way.empty() || request.way.back() == request.target);
+    EXPECT_EQ(request.visit, request.target == Vec3(20, 0, 2));
+    const double step = std::min(0.3, way.norm());
+    ASSERT_GT(step, 0.0);
+    const Vec3 next = position + step / way.norm() * way;
+    ASSERT_GT(clearance_of(tracks, position, next), 0.0) << position.transpose();
+    position = next;
+    flown += step;
+  }
+  EXPECT_LT((position - Vec3(20, 0, 2)).norm(), 0.51);
+  EXPECT_LT(flown, 36.0);
+}
+
+TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
+  const std::vector<base::Track> tracks = numbered(wall(10, 0.0, 1.3));
+  PathRequest request = guide_request(tracks, {8, 0.3, 2});
+  Guide guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  ASSERT_FALSE(guide.way().empty());
+  EXPECT_GE(request.margin, 0.1);
+  EXPECT_LT(request.margin, 0.3);
+  EXPECT_NEAR(request.vehicle.cruise_speed, 3.0 * request.margin / kKept, 1e-12);
+  // Far from it nothing gives way.
+  request = guide_request(tracks, {0, 0.3, 2});
+  guide = Guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  EXPECT_EQ(request.margin, kKept);
+  EXPECT_EQ(request.vehicle.cruise_speed, 3.0);
+  // Who does not know where the door is but to a decimetre or two does not go through.
+  std::vector<base::Track> blurred = tracks;
+  for (base::Track& track : blurred) track.position_sigma = 0.3;
+  request = guide_request(blurred, {8, 0.3, 2});
+  guide = Guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  EXPECT_TRUE(guide.way().empty());
+  EXPECT_EQ(request.margin, kKept);
+}
+
+TEST(Guide, PassesByTheMapAsByTracks) {
+  const geometry::StaticMap map(dead_end());
+  PathRequest request = guide_request({});
+  Guide guide({}, Guide::Knowledge::kSensed);
+  for (int n = 0; n < 100 && guide.way().empty(); ++n) {
+    request = guide_request({});
+    guide.lead(request, 0.05 * n, {&map});
+  }
+  EXPECT_FALSE(guide.way().empty());
+  EXPECT_NE(request.target, Vec3(20, 0, 2));
+}
+
+// What is tracked stands once it has rested for a second; out of sight it stands still, in sight it does not.
+TEST(Guide, RemembersWhatStandsOutOfSight) {
+  const std::vector<base::Track> tracks = dead_end();
+  base::Track far;
+  far.id = 99;
+  far.radius = 0.5;
+  far.position = {8, -15, 2};
+  far.velocity = {1, 0, 0};
+  Guide guide({}, Guide::Knowledge::kSensed);
+  const auto led = [&](double now, const std::vector<base::Track>& seen) {
+    PathRequest request = guide_request(seen);
+    guide.lead(request, now);
+    return !guide.way().empty();
+  };
+  EXPECT_FALSE(led(0.0, tracks));
+  EXPECT_FALSE(led(0.9, tracks));
+  bool found = false;
+  double now = 1.0;
+  for (; now < 4.0 && !found; now += 0.05) found = led(now, tracks);
+  EXPECT_TRUE(found);
+  EXPECT_TRUE(led(now + 20.0, {})) << "nothing is seen at all";
+  EXPECT_FALSE(led(now + 21.0, {far})) << "who sees as far would see the walls";
+}
+
+TEST(Guide, LeavesBadRequestsAndGuidelessSettingsAlone) {
+  const std::vector<base::Track> tracks = dead_end();
+  PathRequest request = guide_request(tracks);
+  request.position.x() = std::nan("");
+  Guide({}, Guide::Knowledge::kWhole).lead(request, 0.0);
+  EXPECT_EQ(request.target, Vec3(20, 0, 2));
+  base::HorizonSettings settings;
+  settings.guide = false;
+  request = guide_request(tracks);
+  Guide(settings, Guide::Knowledge::kWhole).lead(request, 0.0);
+  EXPECT_EQ(request.target, Vec3(20, 0, 2));
+}
+
+}  // namespace
+}  // namespace jink::planner::horizon
