@@ -46,12 +46,16 @@ double length_of(std::span<const Vec3> way) {
 }
 
 bool rests(const base::Track& track) {
-  return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + 2.0 * track.velocity_sigma;
+  return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest;
 }
 
 /// The guide knows all of the map, the request what is near.
 bool is_mapped(const base::Track& track) {
   return track.id >= geometry::StaticMap::kFirstId;
+}
+
+bool something_moves(const PathRequest& request) {
+  return !request.paths.empty() || !std::all_of(request.tracks.begin(), request.tracks.end(), rests);
 }
 
 }  // namespace
@@ -82,6 +86,7 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   request.way.push_back(request.target);
 }
 
+// Where something moves, of what is tracked nothing is relied upon to stand: walls of spheres sway as one.
 // What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
 void Guide::notice(const PathRequest& request, double now, const MapPlace& map) {
   if (knowledge_ == Knowledge::kWhole) {
@@ -109,8 +114,9 @@ void Guide::notice(const PathRequest& request, double now, const MapPlace& map) 
     return s.last < now && (now - s.last > kRemembered || (s.track.position - request.position).norm() < sight);
   });
   std::vector<base::Track> standing;
-  for (const Seen& s : seen_)
-    if (now - s.since >= kSettled) standing.push_back(s.track);
+  for (const Seen& s : seen_) {
+    if (now - s.since >= kSettled && !something_moves(request)) standing.push_back(s.track);
+  }
   stand(standing, map);
 }
 
@@ -208,7 +214,9 @@ bool Guide::pass(const Vec3& position) {
   return least <= kStrayed;
 }
 
+// Beside what moves, the margin is for that, too.
 void Guide::slow_down(PathRequest& request) const {
+  if (something_moves(request)) return;
   const double radius = request.vehicle.radius;
   const double enough = radius + request.margin + kRoom;
   double narrowest = enough;

@@ -21,7 +21,8 @@ class Guide {
  public:
   /// How much is known of what stands.
   enum class Knowledge {
-    kSensed,  ///< tracks come and go: what has rested for a second stands, and is remembered where nothing is seen
+    kSensed,  ///< tracks come and go: what has rested for a second stands while nothing that is tracked moves, and is
+              ///< remembered where nothing is seen; the map stands in any case
     kWhole    ///< what stands is among the tracks from the start on, and a search may take its time
   };
   /// Leads nowhere where settings.guide is false.

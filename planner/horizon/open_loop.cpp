@@ -158,6 +158,7 @@ void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& set
   const std::vector<base::Track> tracks = tracks_along(plan.path, request, kNear);
   from.tracks = tracks;
   const double acceleration = settings.planned_acceleration(from.vehicle.max_acceleration);
+  const double hardest = settings.for_emergencies().planned_acceleration(from.vehicle.max_acceleration);
   const double time_limit = std::max(request.time_limit, plan.path.back().t);
   const double clearance = plan.status == verify::PlanStatus::kReaches
                                ? std::min(from.margin, plan.verification.min_clearance)
@@ -168,6 +169,7 @@ void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& set
     offered.path = std::move(tight);
     judge(request, settings.step, offered);
     if (offered.status != verify::PlanStatus::kReaches || offered.verification.min_clearance < clearance) return;
+    if (offered.verification.limits.acceleration * from.vehicle.max_acceleration > hardest) return;
     if (plan.status == verify::PlanStatus::kReaches && cost(offered.path) >= cost(plan.path)) return;
     plan.path = std::move(offered.path);
     plan.verification = offered.verification;
