@@ -29,6 +29,7 @@ struct GridQuery {
 /// One search after another. Same bits for the same calls.
 class GridSearch {
  public:
+  /// How far a search has come.
   enum class State {
     kIdle,       ///< begin() was not called
     kSearching,  ///< advance() it

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "planner/geometry/static_map.hpp"
 #include "planner/horizon/path_check.hpp"
@@ -96,26 +97,29 @@ void Guide::notice(const PathRequest& request, double now, const MapPlace& map) 
     stand(standing, map);
     return;
   }
+  std::unordered_map<std::uint64_t, std::size_t> known;
+  for (std::size_t i = 0; i < seen_.size(); ++i) known[seen_[i].track.id] = i;
   double sight = 0.0;
   for (const base::Track& track : request.tracks) {
     if (is_mapped(track)) continue;
     sight = std::max(sight, (track.position - request.position).norm());
-    const auto known = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& s) { return s.track.id == track.id; });
-    if (!rests(track)) {
-      if (known != seen_.end()) seen_.erase(known);
-    } else if (known == seen_.end()) {
+    const auto found = known.find(track.id);
+    if (found == known.end()) {
       seen_.push_back({track, now, now});
-    } else {
-      const bool moved = (known->track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
-      *known = {track, moved ? now : known->since, now};
+      continue;
     }
+    Seen& seen = seen_[found->second];
+    const bool moved = (seen.track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
+    seen = {track, moved || !rests(track) ? now : seen.since, now};
   }
   std::erase_if(seen_, [&](const Seen& s) {
-    return s.last < now && (now - s.last > kRemembered || (s.track.position - request.position).norm() < sight);
+    return s.last < now &&
+           (now - s.last > kRemembered || !rests(s.track) || (s.track.position - request.position).norm() < sight);
   });
   std::vector<base::Track> standing;
-  for (const Seen& s : seen_) {
-    if (now - s.since >= kSettled && !something_moves(request)) standing.push_back(s.track);
+  if (!something_moves(request)) {
+    for (const Seen& s : seen_)
+      if (now - s.since >= kSettled) standing.push_back(s.track);
   }
   stand(standing, map);
 }

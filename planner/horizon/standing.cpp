@@ -2,45 +2,57 @@
 #include "planner/horizon/standing.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace jink::planner::horizon {
 
 void Standing::set(std::span<const base::Track> tracks, const MapPlace& map, double sigmas) {
-  tracks_.assign(tracks.begin(), tracks.end());
-  things_.clear();
-  for (const base::Track& track : tracks_) {
-    const double more = sigmas * track.position_sigma;
-    things_.push_back({track.position, track.radius + more, more, {track.body, track.position, 0.0}});
+  const auto is_same = [](const base::Track& a, const base::Track& b) {
+    return a.position == b.position && a.radius == b.radius && a.body.solid == b.body.solid && a.body.yaw == b.body.yaw;
+  };
+  const std::span<const base::Track> before = tracked_.tracks();
+  if (!std::equal(tracks.begin(), tracks.end(), before.begin(), before.end(), is_same)) {
+    std::vector<base::Track> still;
+    for (const base::Track& track : tracks) {
+      still.push_back(track);
+      still.back().velocity = still.back().acceleration = Vec3::Zero();
+    }
+    tracked_ = geometry::StaticMap(std::move(still));
+    tracks_.solids = placed(tracked_);
   }
-  map_more_ = sigmas * map.sigma;
-  const bool is_another = map.map != map_.map;
-  map_ = map;
-  if (!is_another) return;
-  mapped_.clear();
-  if (map_.map == nullptr) return;
-  for (const base::Track& track : map_.map->tracks()) mapped_.emplace_back(track.body, track.position, 0.0);
+  double sigma = 0.0;
+  for (const base::Track& track : tracks) sigma = std::max(sigma, track.position_sigma);
+  tracks_.more = sigmas * sigma;
+  if (map.map != given_) map_.solids = map.map != nullptr ? placed(*map.map) : std::vector<PlacedSolid>();
+  given_ = map.map;
+  map_.more = sigmas * map.sigma;
+  map_.up = map.up;
+  map_.floor = map.floor;
+}
+
+std::vector<PlacedSolid> Standing::placed(const geometry::StaticMap& map) {
+  std::vector<PlacedSolid> solids;
+  solids.reserve(map.tracks().size());
+  for (const base::Track& track : map.tracks()) solids.emplace_back(track.body, track.position, 0.0);
+  return solids;
 }
 
 double Standing::distance(const Vec3& place, double most) const {
+  const double least = distance(tracked_, tracks_, place, most);
+  return given_ != nullptr ? distance(*given_, map_, place, least) : least;
+}
+
+double Standing::distance(const geometry::StaticMap& map, const Known& known, const Vec3& place, double most) {
   double least = most;
-  for (const Thing& thing : things_) {
-    const double squared = (place - thing.center).squaredNorm();
-    const double near = thing.radius + least;
-    if (near <= 0.0 || squared >= near * near) continue;
-    least = std::min(
-        least, thing.solid.is_none() ? std::sqrt(squared) - thing.radius : thing.solid.distance(place) - thing.more);
-  }
-  if (mapped_.empty()) return least;
-  const Vec3 there = place - Vec3(0.0, 0.0, map_.up);
-  map_.map->visit({there, there}, least + map_more_, [&](std::size_t i) {
-    if (map_.map->box(i).max.z() + map_.up > map_.floor) {
-      const base::Track& track = map_.map->tracks()[i];
-      const double off =
-          mapped_[i].is_none() ? (there - track.position).norm() - track.radius : mapped_[i].distance(there);
-      least = std::min(least, off - map_more_);
+  const Vec3 there = place - Vec3(0.0, 0.0, known.up);
+  map.visit({there, there}, least + known.more, [&](std::size_t i) {
+    if (map.box(i).max.z() + known.up > known.floor) {
+      const base::Track& track = map.tracks()[i];
+      const PlacedSolid& solid = known.solids[i];
+      const double off = solid.is_none() ? (there - track.position).norm() - track.radius : solid.distance(there);
+      least = std::min(least, off - known.more);
     }
-    return least + map_more_;
+    return least + known.more;
   });
   return least;
 }

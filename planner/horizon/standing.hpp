@@ -22,30 +22,34 @@ struct MapPlace {
 /// Obstacles at rest. Distances are to their surfaces, and to all that is between its slabs for a hull.
 class Standing {
  public:
-  /// Forgets what stood before. Each of `tracks` stands, and all of the map, so many of its position's standard
-  /// deviations larger than it is said to be. O(tracks); O(map) where the map is another.
+  /// Forgets what stood before. Each of `tracks` stands where it is, and all of the map, so many standard deviations
+  /// of a place larger than it is said to be; of the tracks' the largest counts for all. O(tracks), and O(n log² n)
+  /// where tracks or map are others than before.
   void set(std::span<const base::Track> tracks, const MapPlace& map, double sigmas);
 
-  /// From a place to the nearest surface, m, `most` where that is farther; negative in a solid or a sphere. O(tracks).
+  /// From a place to the nearest surface, m, `most` where that is farther; negative in a solid or a sphere. O(log n)
+  /// for each of the few that are near.
   [[nodiscard]] double distance(const Vec3& place, double most) const;
-  /// Whether all of a line is at least `kept`, > 0, away, but for less than 0.02 m. O(tracks · steps), a step as long
-  /// as the place is clear.
+  /// Whether all of a line is at least `kept` away, but for less than 0.02 m. As distance() for each step, which is as
+  /// long as the place is clear.
   [[nodiscard]] bool is_clear(const Vec3& from, const Vec3& to, double kept) const;
   /// Nothing stands.
-  [[nodiscard]] bool empty() const { return things_.empty() && mapped_.empty(); }
+  [[nodiscard]] bool empty() const { return tracks_.solids.empty() && map_.solids.empty(); }
 
  private:
-  struct Thing {
-    Vec3 center;
-    double radius;  // that encloses it
-    double more;    // that it counts as larger than its solid
-    PlacedSolid solid;
+  /// What goes with a map.
+  struct Known {
+    std::vector<PlacedSolid> solids;  // in the map's order
+    double more = 0.0;                // m, that all of it counts as larger
+    double up = 0.0;
+    double floor = -base::kInfinity;
   };
-  std::vector<base::Track> tracks_;  // own the solids
-  std::vector<Thing> things_;
-  MapPlace map_;
-  double map_more_ = 0.0;            // as Thing::more
-  std::vector<PlacedSolid> mapped_;  // in the map's order
+  static std::vector<PlacedSolid> placed(const geometry::StaticMap& map);
+  static double distance(const geometry::StaticMap& map, const Known& known, const Vec3& place, double most);
+
+  geometry::StaticMap tracked_;
+  const geometry::StaticMap* given_ = nullptr;
+  Known tracks_, map_;
 };
 
 }  // namespace jink::planner::horizon
