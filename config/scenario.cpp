@@ -126,8 +126,10 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
   scenario.vehicle = vehicle.limits;
   scenario.time_limit = map.number_or("time_limit", above(0, 1e6), default_time_limit(scenario));
   if (const auto sensing = map.find("sensing")) scenario.sensing = read_sensing(*sensing);
-  for (const Value& item : map.at("obstacles", "a list, [] for none").list(0, kMostObstacles)) {
-    scenario.obstacles.push_back(read_obstacle(item));
+  // Who has a known world may have nothing else in it.
+  if (!map.find("map") && !map.find("no_fly")) (void)map.at("obstacles", "a list, [] for none");
+  if (const auto obstacles = map.find("obstacles")) {
+    for (const Value& item : obstacles->list(0, kMostObstacles)) scenario.obstacles.push_back(read_obstacle(item));
   }
   scenario.map = read_map(map, file);
   double ground = std::min({0.0, scenario.start.z(), scenario.target.z()});

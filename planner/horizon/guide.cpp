@@ -153,7 +153,8 @@ void Guide::look_for_way(const PathRequest& request, double now) {
     state = search_.advance(standing_, places);
   }
   if (state == GridSearch::State::kSearching) return;
-  search_again_ = state == GridSearch::State::kNone ? now + kSearchAgain : now;
+  if (state == GridSearch::State::kNone)
+    search_again_ = knowledge_ == Knowledge::kWhole ? base::kInfinity : now + kSearchAgain;
   way_ = state == GridSearch::State::kFound ? pulled_tight(search_.way(), request) : std::vector<Vec3>();
   search_ = {};
   least_left_ = base::kInfinity;

@@ -67,6 +67,14 @@ TEST(LoadMap, ReadsAListOfSolidsAtRest) {
   EXPECT_FALSE(mission.autopilot_fence);
 }
 
+TEST(LoadMap, IsAllThatAWorldNeeds) {
+  const Folder folder;
+  const std::string bare = kScenario.substr(0, kScenario.find("obstacles"));
+  EXPECT_EQ(load_scenario(folder.write("s.yaml", bare + kZone)).map.size(), 1U);
+  EXPECT_TRUE(load_scenario(folder.write("s.yaml", bare + "map: []\n")).obstacles.empty());
+  EXPECT_THROW((void)load_scenario(folder.write("s.yaml", bare)), ConfigError);
+}
+
 TEST(LoadMap, IsWrittenAsItIs) {
   const Folder folder;
   const Scenario scenario = scenario_with(folder, "map:\n" + kSolids + kZone);
