@@ -58,15 +58,15 @@ double Standing::distance(const geometry::StaticMap& map, const Known& known, co
 }
 
 bool Standing::is_clear(const Vec3& from, const Vec3& to, double kept) const {
-  constexpr double kLeast = 0.02;    // m, of a step
-  constexpr double kFarthest = 5.0;  // m, of one: farther obstacles need not be looked at
+  constexpr double kShortestStep = 0.02;  // m, of a step
+  constexpr double kLongestStep = 5.0;    // m, of one: farther obstacles need not be looked at
   const double length = (to - from).norm();
   for (double at = 0.0;;) {
     const Vec3 place = length > 0.0 ? Vec3(from + std::min(1.0, at / length) * (to - from)) : from;
-    const double spare = distance(place, kept + std::min(length, kFarthest)) - kept;
+    const double spare = distance(place, kept + std::min(length, kLongestStep)) - kept;
     if (spare < 0.0) return false;
     if (at >= length) return true;
-    at = std::min(length, at + std::max(kLeast, spare));
+    at = std::min(length, at + std::max(kShortestStep, spare));
   }
 }
 
