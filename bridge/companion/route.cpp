@@ -6,7 +6,7 @@ namespace jink::bridge::companion {
 bool Route::pass(const Vec3& position) {
   if (next_ + 1 >= waypoints_.size() || (position - target()).norm() > kPassing) return false;
   ++next_;
-  nearest_ = planner::base::kInfinity;
+  progress_.begin_anew();
   return true;
 }
 
@@ -15,12 +15,7 @@ bool Route::arrived(const Vec3& position, const Vec3& velocity) const {
 }
 
 bool Route::stuck(double now, const Vec3& position) {
-  const double left = (target() - position).norm();
-  if (left < nearest_ - kGain) {
-    nearest_ = left;
-    gained_at_ = now;
-  }
-  return now - gained_at_ > kPatience;
+  return progress_.stalls(now, (target() - position).norm());
 }
 
 }  // namespace jink::bridge::companion

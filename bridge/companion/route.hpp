@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planner/base/types.hpp"
+#include "planner/horizon/progress.hpp"
 
 namespace jink::bridge::companion {
 
@@ -16,8 +17,6 @@ class Route {
   static constexpr double kArrival = 0.3;       ///< m, to the last waypoint
   static constexpr double kArrivalSpeed = 0.5;  ///< m/s
   static constexpr double kPassing = 0.7;       ///< m, to a waypoint on the way
-  static constexpr double kPatience = 4.0;      ///< s, without coming nearer to the waypoint
-  static constexpr double kGain = 0.5;          ///< m, that count as nearer
 
   explicit Route(std::vector<Vec3> waypoints) : waypoints_(std::move(waypoints)) {}
   /// The same waypoints elsewhere.
@@ -41,8 +40,7 @@ class Route {
  private:
   std::vector<Vec3> waypoints_;
   std::size_t next_ = 0;
-  double nearest_ = planner::base::kInfinity;  // that the vehicle came to it, m
-  double gained_at_ = 0.0;                     // when
+  planner::horizon::Progress progress_;  // towards it
 };
 
 }  // namespace jink::bridge::companion

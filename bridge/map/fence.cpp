@@ -36,18 +36,6 @@ constexpr double kBeyond = 10.0;       // m, that walls reach beyond the geofenc
   throw std::runtime_error("the autopilot's fence: item " + std::to_string(item) + " " + what);
 }
 
-/// The corners in counter-clockwise order.
-Area counter_clockwise(Area area) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < area.size(); ++i) {
-    const Vec2& a = area[i];
-    const Vec2& b = area[(i + 1) % area.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  if (twice < 0.0) std::reverse(area.begin(), area.end());
-  return area;
-}
-
 /// Where a wall's inner face is the edge, nothing comes past a corner: there two walls touch.
 void add_walls(const Area& area, double low, double high, std::vector<config::Obstacle>& solids) {
   for (std::size_t i = 0; i < area.size(); ++i) {
@@ -102,7 +90,7 @@ Fence fence_of(std::span<const mavlink::MissionItem> items, const frames::Geodet
       }
       if (!planner::geometry::is_simple(area)) refuse_fence(i - 1, "ends a polygon that crosses itself");
       if (first.command == kPolygonInclusion) {
-        fence.inside.push_back(counter_clockwise(std::move(area)));
+        fence.inside.push_back(planner::geometry::counter_clockwise(std::move(area)));
         continue;
       }
       ++fence.outside;

@@ -90,9 +90,13 @@ bool is_simple(std::span<const Vec2> corners) {
   return true;
 }
 
+std::vector<Vec2> counter_clockwise(std::vector<Vec2> corners) {
+  if (twice_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
 std::vector<std::vector<Vec2>> convex_pieces(std::span<const Vec2> corners) {
-  std::vector<Vec2> left(corners.begin(), corners.end());
-  if (twice_area(corners) < 0.0) std::reverse(left.begin(), left.end());
+  std::vector<Vec2> left = counter_clockwise({corners.begin(), corners.end()});
   drop_straight(left);
   std::vector<std::vector<Vec2>> pieces;
   while (!is_convex(left)) {

@@ -15,6 +15,9 @@ using Vec2 = Eigen::Vector2d;
 /// neighbours at the corner that they share. O(n²).
 [[nodiscard]] bool is_simple(std::span<const Vec2> corners);
 
+/// The same corners, counter-clockwise.
+[[nodiscard]] std::vector<Vec2> counter_clockwise(std::vector<Vec2> corners);
+
 /// Convex polygons, counter-clockwise, that together are the polygon: itself where it is convex, else triangles (ear
 /// clipping, Meisters 1975). Where rounding leaves no ear, the last piece is all corners that are left, whose hull
 /// holds the rest. Precondition: is_simple(). O(n³), in practice O(n²).

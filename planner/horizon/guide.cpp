@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "planner/geometry/static_map.hpp"
+#include "planner/horizon/encounters.hpp"
 #include "planner/horizon/path_check.hpp"
 
 namespace jink::planner::horizon {
@@ -28,16 +29,14 @@ constexpr double kAhead = 5.0;          // m, along the way, that a vehicle may 
 constexpr double kSlowDownAhead = 4.0;  // m, of a narrow place
 constexpr double kSample = 0.25;        // m, along a way
 constexpr double kSlowestShare = 0.3;   // of the cruise speed, in the narrowest place
-constexpr double kGain = 0.5;           // m, of the way, in
-constexpr double kPatience = 4.0;       // s, by a vehicle that is not stuck
 constexpr int kHalvings = 6;            // of a leg, to the farthest place in sight
 constexpr int kMissed = 8;              // places out of sight, after which none farther is looked at
 
-double distance_to_line(const Vec3& place, const Vec3& from, const Vec3& to) {
+Vec3 nearest_on_line(const Vec3& place, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double squared = way.squaredNorm();
   const double share = squared > 0.0 ? std::clamp((place - from).dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (place - from - share * way).norm();
+  return from + share * way;
 }
 
 double length_of(std::span<const Vec3> way) {
@@ -80,7 +79,7 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   if (way_.empty()) return;
   slow_down(request);
   const double left = (way_.front() - request.position).norm() + length_of(way_);
-  request.stuck = request.stuck && !gains(left, now);
+  request.stuck = request.stuck && progress_.stalls(now, left);
   const std::size_t leg = lead_ahead(request);
   request.visit = request.visit && request.target == target_;
   request.way.assign(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg));
@@ -157,13 +156,13 @@ void Guide::look_for_way(const PathRequest& request, double now) {
     search_again_ = knowledge_ == Knowledge::kWhole ? base::kInfinity : now + kSearchAgain;
   way_ = state == GridSearch::State::kFound ? pulled_tight(search_.way(), request) : std::vector<Vec3>();
   search_ = {};
-  least_left_ = base::kInfinity;
+  progress_.begin_anew();
   if (!way_.empty() && !is_open(way_, request)) way_.clear();  // what stands has changed since
 }
 
 // From each place to the farthest in sight that is no nearer to anything than the places between them are.
 std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const {
-  const double wanted = request.vehicle.radius + request.margin + settings_.seed_clearance;
+  const double wanted = request.vehicle.radius + first_clearance(request, settings_);
   std::vector<double> clearance;
   for (const Vec3& place : way) clearance.push_back(standing_.distance(place, wanted));
   std::vector<Vec3> tight{way.front()};
@@ -203,16 +202,13 @@ bool Guide::pass(const Vec3& position) {
   std::size_t leg = 1;
   Vec3 nearest = way_.front();
   for (std::size_t i = 1; i < way_.size() && gone <= kAhead; ++i) {
-    const Vec3 along = way_[i] - way_[i - 1];
-    const double squared = along.squaredNorm();
-    const double share = squared > 0.0 ? std::clamp((position - way_[i - 1]).dot(along) / squared, 0.0, 1.0) : 0.0;
-    const Vec3 place = way_[i - 1] + share * along;
+    const Vec3 place = nearest_on_line(position, way_[i - 1], way_[i]);
     if ((place - position).norm() <= least + kTied) {
       least = (place - position).norm();
       leg = i;
       nearest = place;
     }
-    gone += along.norm();
+    gone += (way_[i] - way_[i - 1]).norm();
   }
   way_.erase(way_.begin(), way_.begin() + static_cast<std::ptrdiff_t>(leg) - 1);
   way_.front() = nearest;
@@ -247,8 +243,9 @@ void Guide::slow_down(PathRequest& request) const {
 std::size_t Guide::lead_ahead(PathRequest& request) const {
   const double kept = request.vehicle.radius + request.margin;
   const auto is_aside = [&](std::size_t leg, const Vec3& place, double most) {
-    return std::any_of(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg),
-                       [&](const Vec3& corner) { return distance_to_line(corner, request.position, place) > most; });
+    return std::any_of(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg), [&](const Vec3& corner) {
+      return (corner - nearest_on_line(corner, request.position, place)).norm() > most;
+    });
   };
   const auto is_near = [&](std::size_t leg, const Vec3& place) {
     return !is_aside(leg, place, kCutOff) || standing_.is_clear(request.position, place, kept);
@@ -266,15 +263,6 @@ std::size_t Guide::lead_ahead(PathRequest& request) const {
   }
   request.target = way_[leg] + near * (way_[leg + 1] - way_[leg]);
   return leg + 1;
-}
-
-// Whether less of the way is left than there was for long.
-bool Guide::gains(double left, double now) {
-  if (left < least_left_ - kGain) {
-    least_left_ = left;
-    gained_at_ = now;
-  }
-  return now - gained_at_ <= kPatience;
 }
 
 }  // namespace jink::planner::horizon

@@ -12,6 +12,7 @@
 #include "planner/base/types.hpp"
 #include "planner/horizon/grid_search.hpp"
 #include "planner/horizon/path_problem.hpp"
+#include "planner/horizon/progress.hpp"
 #include "planner/horizon/standing.hpp"
 
 namespace jink::planner::horizon {
@@ -52,7 +53,6 @@ class Guide {
   bool pass(const Vec3& position);
   void slow_down(PathRequest& request) const;
   std::size_t lead_ahead(PathRequest& request) const;
-  [[nodiscard]] bool gains(double left, double now);
 
   base::HorizonSettings settings_;
   Knowledge knowledge_;
@@ -61,10 +61,9 @@ class Guide {
   double sigma_ = 0.0;  // m, the largest standard deviation of their positions
   GridSearch search_;
   std::vector<Vec3> way_;
-  Vec3 target_ = Vec3::Zero();           // of the flight
-  double search_again_ = 0.0;            // s, when, after one that found none
-  double least_left_ = base::kInfinity;  // m, of the way
-  double gained_at_ = 0.0;               // s
+  Vec3 target_ = Vec3::Zero();  // of the flight
+  double search_again_ = 0.0;   // s, when, after one that found none
+  Progress progress_;
 };
 
 }  // namespace jink::planner::horizon

@@ -9,11 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/settings.hpp"
-#include "planner/base/worker_pool.hpp"
-#include "planner/horizon/open_loop.hpp"
-#include "sim/flight/closed_loop.hpp"
-#include "sim/world/known_world.hpp"
+#include "tests/worlds/way_through.hpp"
 
 namespace jink::worlds {
 namespace {
@@ -95,21 +91,11 @@ std::vector<GuidedWorld> guided_worlds() {
 class GuidedWorlds : public testing::TestWithParam<GuidedWorld> {};
 
 TEST_P(GuidedWorlds, AreFlownThrough) {
-  const config::Settings settings;
-  sim::flight::ClosedLoopOptions options;
-  options.threads = 1;
-  const sim::flight::ClosedLoopResult result = sim::flight::fly_closed_loop(GetParam().scenario, settings, options);
-  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
-  EXPECT_GT(result.min_clearance, 0.0);
+  (void)expect_flown_through(GetParam().scenario);
 }
 
 TEST_P(GuidedWorlds, ArePlannedThrough) {
-  const sim::world::KnownWorld known(GetParam().scenario);
-  planner::base::WorkerPool pool(1);
-  const planner::base::HorizonSettings settings;
-  const planner::verify::Plan plan =
-      planner::horizon::plan_open_loop(settings, {}, known.open_loop, 1, {settings.generations}, pool);
-  EXPECT_EQ(plan.status, planner::verify::PlanStatus::kReaches);
+  expect_planned_through(GetParam().scenario, 2e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, GuidedWorlds, testing::ValuesIn(guided_worlds()),

@@ -8,13 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "config/settings.hpp"
 #include "planner/base/random.hpp"
-#include "planner/base/worker_pool.hpp"
-#include "planner/horizon/open_loop.hpp"
-#include "sim/flight/closed_loop.hpp"
-#include "sim/world/known_world.hpp"
-#include "sim/world/world.hpp"
+#include "tests/worlds/way_through.hpp"
 
 namespace jink::worlds {
 namespace {
@@ -89,31 +84,11 @@ std::vector<SolidWorld> solid_worlds() {
 class SolidWorlds : public testing::TestWithParam<SolidWorld> {};
 
 TEST_P(SolidWorlds, AreFlownThrough) {
-  const config::Settings settings;
-  sim::flight::ClosedLoopOptions options;
-  options.threads = 1;
-  const sim::flight::ClosedLoopResult result = sim::flight::fly_closed_loop(GetParam().scenario, settings, options);
-  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
-  EXPECT_GT(result.min_clearance, 0.0);
+  (void)expect_flown_through(GetParam().scenario);
 }
 
-// And the plan is free by the judge's measure too, which shares nothing with the verifier's.
 TEST_P(SolidWorlds, ArePlannedThrough) {
-  const sim::world::KnownWorld known(GetParam().scenario);
-  planner::base::WorkerPool pool(1);
-  const planner::base::HorizonSettings settings;
-  const planner::verify::Plan plan =
-      planner::horizon::plan_open_loop(settings, {}, known.open_loop, 1, {settings.generations}, pool);
-  ASSERT_EQ(plan.status, planner::verify::PlanStatus::kReaches);
-  const sim::world::World world(GetParam().scenario);
-  double least = planner::base::kInfinity;
-  for (std::size_t i = 1; i < plan.path.size(); ++i) {
-    const auto& a = plan.path[i - 1];
-    const auto& b = plan.path[i];
-    least = std::min(least, world.sweep(a.position, a.t, b.position, b.t).min_clearance);
-  }
-  EXPECT_NEAR(least, plan.verification.min_clearance, 2e-6);
-  EXPECT_GT(least, 0.0);
+  expect_planned_through(GetParam().scenario, 2e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, SolidWorlds, testing::ValuesIn(solid_worlds()),

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "bridge/base/clock.hpp"
+#include "bridge/dds/payload_io.hpp"
 
 namespace jink::bridge::testing {
 
@@ -39,6 +40,17 @@ class ManualClock final : public base::Clock {
  private:
   std::atomic<double> now_ = 0.0;
 };
+
+/// A message with a header as a payload, in that frame, stamped 100.5 s.
+template <typename Message>
+dds::Payload stamped_payload(Message message, const std::string& frame) {
+  message.header().frame_id(frame);
+  message.header().stamp().sec(100);
+  message.header().stamp().nanosec(500'000'000);
+  dds::Payload payload;
+  dds::encode(message, payload);
+  return payload;
+}
 
 /// Python with Cyclone DDS, another vendor's, and a script of this folder.
 inline std::string python() {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "TrackedObjects.h"
@@ -31,6 +32,7 @@ using testing::kNaN;
 using testing::own_domain;
 using testing::python;
 using testing::script;
+using testing::stamped_payload;
 using tracking::TrackMessage;
 using Object = autoware_perception_msgs::msg::dds_::TrackedObject_;
 using Objects = autoware_perception_msgs::msg::dds_::TrackedObjects_;
@@ -61,13 +63,8 @@ Object object(std::uint8_t id = 1) {
 
 Payload payload_of(const std::vector<Object>& objects, const std::string& frame = "map") {
   Objects message;
-  message.header().frame_id(frame);
-  message.header().stamp().sec(100);
-  message.header().stamp().nanosec(500'000'000);
   message.objects(objects);
-  Payload payload;
-  encode(message, payload);
-  return payload;
+  return stamped_payload(std::move(message), frame);
 }
 
 Track track_of(const Object& o) {

@@ -31,6 +31,7 @@ using testing::kNaN;
 using testing::own_domain;
 using testing::python;
 using testing::script;
+using testing::stamped_payload;
 using tracking::TrackMessage;
 using Detection = vision_msgs::msg::dds_::Detection3D_;
 using Detections = vision_msgs::msg::dds_::Detection3DArray_;
@@ -56,13 +57,8 @@ Detection detection(const std::string& id) {
 
 Payload array_of(const std::vector<Detection>& detections, const std::string& frame = "map") {
   Detections message;
-  message.header().frame_id(frame);
-  message.header().stamp().sec(100);
-  message.header().stamp().nanosec(500'000'000);
   message.detections(detections);
-  Payload payload;
-  encode(message, payload);
-  return payload;
+  return stamped_payload(std::move(message), frame);
 }
 
 Track only_track(const Detection& d) {
