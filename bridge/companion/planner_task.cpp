@@ -10,9 +10,12 @@ namespace jink::bridge::companion {
 namespace {
 
 // What climbs and what stops has nowhere to go.
-void lead(planner::horizon::Guide& guide, PlanJob& job) {
-  if (job.goal == Goal::Kind::kWaypoint)
-    guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
+void lead(planner::horizon::Guide& guide, PlanJob& job, prediction::Obstacles& obstacles) {
+  if (job.goal != Goal::Kind::kWaypoint) return;
+  guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
+  job.standing.assign(guide.standing().begin(), guide.standing().end());
+  planner::horizon::set_apart(job.standing, obstacles.tracks, obstacles.standing);
+  set_obstacles(job, obstacles);
 }
 
 }  // namespace
@@ -79,8 +82,9 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     }
     try {
       const double begun = clock_.now();
-      const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
-      lead(guide_, result.job);
+      prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
+      set_obstacles(result.job, obstacles);
+      lead(guide_, result.job, obstacles);
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::base::Budget budget{
           settings_.horizon.generations,
@@ -110,8 +114,9 @@ void VirtualPlanner::start(PlanJob job) {
   assert(!result_);
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
-  const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
-  lead(guide_, result.job);
+  prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
+  set_obstacles(result.job, obstacles);
+  lead(guide_, result.job, obstacles);
   const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);

@@ -44,12 +44,13 @@ struct MapView {
 
 /// One plan to make. Its path time 0 is `start` in the companion's clock; tracks and state are valid then.
 struct PlanJob {
-  planner::horizon::PathRequest request;  ///< `tracks` and `paths` are set by the task to what follows from the below
+  planner::horizon::PathRequest request;  ///< its obstacles are set by the task to what follows from the below
   std::vector<planner::base::Track> tracks;
   std::vector<prediction::Forecast> forecasts;      ///< of some of the tracks
   std::vector<planner::geometry::KnownPath> paths;  ///< of the team's other vehicles
   MapView map;
-  planner::base::TimedPath previous;  ///< times from `start` on
+  std::vector<std::uint64_t> standing;  ///< ids of the tracks that count among what stands (PathRequest::standing)
+  planner::base::TimedPath previous;    ///< times from `start` on
   Goal::Kind goal = Goal::Kind::kWaypoint;
   Vec3 target = Vec3::Zero();  ///< of the goal; the guide may lead to another first, which is the request's
   std::uint64_t number = 0;
@@ -72,19 +73,20 @@ struct PlanResult {
                                                         const planner::base::HorizonSettings& settings) {
   prediction::Obstacles obstacles = prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time,
                                                              settings.step, settings.acceleration_trust);
-  job.map.append_to(obstacles.tracks);
+  job.map.append_to(obstacles.standing);
+  planner::horizon::set_apart(job.standing, obstacles.tracks, obstacles.standing);
   return obstacles;
 }
-/// The same. The request refers to it, until forget_obstacles().
-[[nodiscard]] inline prediction::Obstacles set_obstacles(PlanJob& job, const planner::base::HorizonSettings& settings) {
-  prediction::Obstacles obstacles = obstacles_of(job, settings);
+/// The request refers to them, until forget_obstacles().
+inline void set_obstacles(PlanJob& job, const prediction::Obstacles& obstacles) {
   job.request.tracks = obstacles.tracks;
   job.request.paths = obstacles.paths;
-  return obstacles;
+  job.request.standing = obstacles.standing;
 }
 inline void forget_obstacles(PlanJob& job) {
   job.request.tracks = {};
   job.request.paths = {};
+  job.request.standing = {};
 }
 
 /// One job at a time.

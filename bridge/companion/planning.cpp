@@ -98,7 +98,9 @@ bool Planning::lands_free(const PlanResult& result) const {
                                   {},
                                   horizon.acceleration_trust,
                                   horizon.time,
-                                  obstacles.paths})
+                                  obstacles.paths,
+                                  {},
+                                  obstacles.standing})
       .free();
 }
 
@@ -254,7 +256,8 @@ planner::base::TimedPath Planning::stop(double now, Intake& intake, const Motion
   job.request.target = flown.front().back().position;
   demand(intake.state(), motion.margin(), job.request);
   look_at_map(intake.state(), job);
-  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
+  const prediction::Obstacles obstacles = obstacles_of(job, settings_.horizon);
+  set_obstacles(job, obstacles);
   planner::horizon::Stop chosen = contingency_.choose(job.request, flown);
   reporter_.stops(now, chosen);
   for (planner::base::TimedPoint& point : chosen.path) point.t += now;
@@ -275,7 +278,8 @@ bool Planning::climbs_free(double now, Intake& intake) const {
   job.request.position = job.request.target = ground;
   demand(intake.state(), settings_.horizon.margin, job.request);
   look_at_map(intake.state(), job);
-  const prediction::Obstacles obstacles = set_obstacles(job, settings_.horizon);
+  const prediction::Obstacles obstacles = obstacles_of(job, settings_.horizon);
+  set_obstacles(job, obstacles);
   job.request.volume = {};
   return std::all_of(kLiftOff.begin(), kLiftOff.end(), [&](double lift_off) {
     const double up = lift_off + (top - ground).norm() / kClimbing;

@@ -57,10 +57,11 @@ struct Forecast {
 /// The forecast as a known path of so many seconds, a point every `step`, its time 0 the forecast's. Its id is 0.
 [[nodiscard]] planner::geometry::KnownPath to_path(const Forecast& forecast, double horizon, double step);
 
-/// What a planner is to avoid: what is predicted plainly, and where the others will be.
+/// What a planner is to avoid: what is predicted plainly, where the others will be, and what stands.
 struct Obstacles {
   std::vector<planner::base::Track> tracks;
   std::vector<planner::geometry::KnownPath> paths;
+  std::vector<planner::base::Track> standing;
 };
 /// The tracks whose plain prediction counts for ever; `paths`, then the forecasts' for so many seconds, each followed
 /// by its track's plain prediction for as long as that counts.

@@ -27,8 +27,7 @@ StaticMap::StaticMap(std::vector<base::Track> tracks) : tracks_(std::move(tracks
   boxes_.reserve(tracks_.size());
   for (base::Track& track : tracks_) {
     if (!is_valid(track)) throw std::invalid_argument("static map: a track that is none");
-    if (!track.velocity.isZero(0.0) || !track.acceleration.isZero(0.0) || track.body.yaw_rate != 0.0)
-      throw std::invalid_argument("static map: a track that moves");
+    if (!is_at_rest(track)) throw std::invalid_argument("static map: a track that moves");
     track.id = kFirstId + boxes_.size();
     boxes_.push_back(box_around(track));
   }

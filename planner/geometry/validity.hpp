@@ -39,6 +39,10 @@ inline constexpr double kTurning = 1e3;   ///< rad/s
          is_within(track.acceleration, kHardest) && is_amount(track.radius) && is_amount(track.position_sigma) &&
          is_amount(track.velocity_sigma) && is_amount(track.age, kLongest) && is_valid(track.body, track.radius);
 }
+/// Whether it neither moves nor turns.
+[[nodiscard]] inline bool is_at_rest(const base::Track& track) {
+  return track.velocity.isZero(0.0) && track.acceleration.isZero(0.0) && track.body.yaw_rate == 0.0;
+}
 /// Whether it is a path, and its radius, margin, standard deviations and age are not below 0. O(points).
 [[nodiscard]] bool is_valid(const KnownPath& path);
 /// Whether it holds a point and its times increase, with no speed between points above kFastest. Of the points times

@@ -44,7 +44,7 @@ Stop Contingency::choose(const PathRequest& request, std::span<const base::Timed
   const auto consider = [&](base::TimedPath path) {
     Stop stop{std::move(path), {}, looked_at++};
     stop.verification = verify_until(stop.path, request, problem_.horizon());
-    const bool good = stop.verification.free() && stop.verification.min_clearance >= request.margin;
+    const bool good = keeps_margins(stop.path, request, problem_.horizon(), stop.verification);
     if (good || best.path.empty() || is_safer(stop.verification, best.verification)) best = std::move(stop);
     return good;
   };

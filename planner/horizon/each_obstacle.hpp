@@ -22,8 +22,8 @@ struct EachObstacle {
   [[nodiscard]] PlacedSolid solid(double t) const { return {body, position(t), t}; }
 };
 
-/// Calls visit(const EachObstacle&) for each of the request's obstacles, tracks first. Wanted is that the surfaces are
-/// `clearance` apart.
+/// Calls visit(const EachObstacle&) for each of the request's obstacles, tracks first, what stands last. Wanted is that
+/// the surfaces are `clearance` apart; from what stands less, by as much as the request's margins differ.
 template <typename Visit>
 void for_each_obstacle(const PathRequest& request, double clearance, const Visit& visit) {
   constexpr double kDifference = 0.05;  // s, over which twice a known path's velocity is taken
@@ -42,6 +42,13 @@ void for_each_obstacle(const PathRequest& request, double clearance, const Visit
     };
     visit(EachObstacle<decltype(position), decltype(velocity)>{path.radius + path.margin + wanted, path.margin + wanted,
                                                                path.until, path.body, position, velocity});
+  }
+  const double beside = wanted - request.margin + request.margin_beside_standing();
+  for (const base::Track& track : request.standing) {
+    const auto position = [&](double /*t*/) { return track.position; };
+    const auto velocity = [](double /*t*/) { return Vec3::Zero().eval(); };
+    visit(EachObstacle<decltype(position), decltype(velocity)>{track.radius + beside, beside, base::kInfinity,
+                                                               track.body, position, velocity});
   }
 }
 

@@ -13,24 +13,26 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kAtRest = 0.1;         // m/s, up to which something rests
-constexpr double kSettled = 1.0;        // s, for which it has rested to stand
-constexpr double kRemembered = 60.0;    // s, since it was seen
-constexpr double kTheSame = 0.3;        // m, that it may move meanwhile
-constexpr double kSigmas = 1.0;         // of its position, that something counts as larger
-constexpr double kFineGrid = 0.5;       // times the cell, where a coarse grid has no way
-constexpr double kSearchAgain = 2.0;    // s, after a search that found none
-constexpr double kNarrower = 0.05;      // m, by which a way may get narrower until another is looked for
-constexpr double kCutOff = 0.3;         // m, of the way, that need not be in sight
-constexpr double kRoom = 0.1;           // m, beside the middle of a narrow place, for the vehicle to pass it
-constexpr double kStrayed = 2.5;        // m, from the way, where it is looked for anew
-constexpr double kTied = 1e-9;          // m: of two legs that are as near the later one counts
-constexpr double kAhead = 5.0;          // m, along the way, that a vehicle may have gone since
-constexpr double kSlowDownAhead = 4.0;  // m, of a narrow place
-constexpr double kSample = 0.25;        // m, along a way
-constexpr double kSlowestShare = 0.3;   // of the cruise speed, in the narrowest place
-constexpr int kHalvings = 6;            // of a leg, to the farthest place in sight
-constexpr int kMissed = 8;              // places out of sight, after which none farther is looked at
+constexpr double kAtRest = 0.1;          // m/s, and m/s², up to which something rests
+constexpr double kSettled = 1.0;         // s, for which it has rested to stand
+constexpr double kSettledInNoise = 3.0;  // s, the same where that is not known exactly
+constexpr double kRemembered = 60.0;     // s, since it was seen
+constexpr double kTheSame = 0.3;         // m, that it may move meanwhile
+constexpr double kSureSigmas = 2.0;      // of its velocity and its position, that these may be off
+constexpr double kSigmas = 1.0;          // of its position, that something counts as larger
+constexpr double kFineGrid = 0.5;        // times the cell, where a coarse grid has no way
+constexpr double kSearchAgain = 2.0;     // s, after a search that found none
+constexpr double kNarrower = 0.05;       // m, by which a way may get narrower until another is looked for
+constexpr double kCutOff = 0.3;          // m, of the way, that need not be in sight
+constexpr double kRoom = 0.1;            // m, beside the middle of a narrow place, for the vehicle to pass it
+constexpr double kStrayed = 2.5;         // m, from the way, where it is looked for anew
+constexpr double kTied = 1e-9;           // m: of two legs that are as near the later one counts
+constexpr double kAhead = 5.0;           // m, along the way, that a vehicle may have gone since
+constexpr double kSlowDownAhead = 4.0;   // m, of a narrow place
+constexpr double kSample = 0.25;         // m, along a way
+constexpr double kSlowestShare = 0.3;    // of the cruise speed, in the narrowest place
+constexpr int kHalvings = 6;             // of a leg, to the farthest place in sight
+constexpr int kMissed = 8;               // places out of sight, after which none farther is looked at
 
 Vec3 nearest_on_line(const Vec3& place, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
@@ -45,22 +47,16 @@ double length_of(std::span<const Vec3> way) {
   return length;
 }
 
+// What swings rests where it turns: there its acceleration tells. In noise that is no more than a guess.
 bool rests(const base::Track& track) {
-  return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest;
-}
-
-/// The guide knows all of the map, the request what is near.
-bool is_mapped(const base::Track& track) {
-  return track.id >= geometry::StaticMap::kFirstId;
-}
-
-bool something_moves(const PathRequest& request) {
-  return !request.paths.empty() || !std::all_of(request.tracks.begin(), request.tracks.end(), rests);
+  return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + kSureSigmas * track.velocity_sigma &&
+         (track.velocity_sigma > 0.0 || track.acceleration.norm() <= kAtRest);
 }
 
 }  // namespace
 
 void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
+  narrow_ = false;
   if (!settings_.guide || !is_valid(request)) return;
   notice(request, now, map);
   if ((request.target - target_).squaredNorm() > 0.0) {
@@ -86,47 +82,50 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   request.way.push_back(request.target);
 }
 
-// Where something moves, of what is tracked nothing is relied upon to stand: walls of spheres sway as one.
-// What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
 void Guide::notice(const PathRequest& request, double now, const MapPlace& map) {
+  std::vector<base::Track> standing;
   if (knowledge_ == Knowledge::kWhole) {
-    std::vector<base::Track> standing;
-    for (const base::Track& track : request.tracks)
-      if (!is_mapped(track) && rests(track)) standing.push_back(track);
-    stand(standing, map);
-    return;
+    std::copy_if(request.tracks.begin(), request.tracks.end(), std::back_inserter(standing), rests);
+  } else {
+    watch(request, now);
+    for (const Seen& s : seen_) {
+      if (now - s.since >= (s.track.velocity_sigma > 0.0 ? kSettledInNoise : kSettled)) standing.push_back(s.track);
+    }
   }
+  standing_.set(standing, map, kSigmas);
+  sigma_ = map.sigma;
+  standing_ids_.clear();
+  for (const base::Track& track : standing) {
+    sigma_ = std::max(sigma_, track.position_sigma);
+    standing_ids_.push_back(track.id);
+  }
+}
+
+// What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
+void Guide::watch(const PathRequest& request, double now) {
   std::unordered_map<std::uint64_t, std::size_t> known;
   for (std::size_t i = 0; i < seen_.size(); ++i) known[seen_[i].track.id] = i;
   double sight = 0.0;
   for (const base::Track& track : request.tracks) {
-    if (is_mapped(track)) continue;
     sight = std::max(sight, (track.position - request.position).norm());
     const auto found = known.find(track.id);
     if (found == known.end()) {
-      seen_.push_back({track, now, now});
+      seen_.push_back({track, track.position, now, now});
       continue;
     }
     Seen& seen = seen_[found->second];
-    const bool moved = (seen.track.position - track.position).norm() > kTheSame + 2.0 * track.position_sigma;
-    seen = {track, moved || !rests(track) ? now : seen.since, now};
+    const bool moved = (seen.from - track.position).norm() > kTheSame + kSureSigmas * track.position_sigma;
+    if (moved || !rests(track)) {
+      seen.from = track.position;
+      seen.since = now;
+    }
+    seen.track = track;
+    seen.last = now;
   }
   std::erase_if(seen_, [&](const Seen& s) {
     return s.last < now &&
            (now - s.last > kRemembered || !rests(s.track) || (s.track.position - request.position).norm() < sight);
   });
-  std::vector<base::Track> standing;
-  if (!something_moves(request)) {
-    for (const Seen& s : seen_)
-      if (now - s.since >= kSettled) standing.push_back(s.track);
-  }
-  stand(standing, map);
-}
-
-void Guide::stand(std::span<const base::Track> standing, const MapPlace& map) {
-  standing_.set(standing, map, kSigmas);
-  sigma_ = map.sigma;
-  for (const base::Track& track : standing) sigma_ = std::max(sigma_, track.position_sigma);
 }
 
 // On a coarse grid, then on a fine one. What was found is still led along meanwhile.
@@ -215,9 +214,7 @@ bool Guide::pass(const Vec3& position) {
   return least <= kStrayed;
 }
 
-// Beside what moves, the margin is for that, too.
-void Guide::slow_down(PathRequest& request) const {
-  if (something_moves(request)) return;
+void Guide::slow_down(PathRequest& request) {
   const double radius = request.vehicle.radius;
   const double enough = radius + request.margin + kRoom;
   double narrowest = enough;
@@ -234,14 +231,15 @@ void Guide::slow_down(PathRequest& request) const {
   const double margin =
       std::min(request.margin, std::max(settings_.guide_margin, narrowest - radius - kRoom) + kSigmas * sigma_);
   const double share = std::max(kSlowestShare, margin / request.margin);
-  request.margin = margin;
+  request.standing_margin = margin;
+  narrow_ = true;
   request.vehicle.cruise_speed *= share;
 }
 
 // To the target, where the way goes hardly aside of the straight line; else to the farthest place on it in sight, or
 // nearly. Returns the end of its leg.
 std::size_t Guide::lead_ahead(PathRequest& request) const {
-  const double kept = request.vehicle.radius + request.margin;
+  const double kept = request.vehicle.radius + request.margin_beside_standing();
   const auto is_aside = [&](std::size_t leg, const Vec3& place, double most) {
     return std::any_of(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg), [&](const Vec3& corner) {
       return (corner - nearest_on_line(corner, request.position, place)).norm() > most;

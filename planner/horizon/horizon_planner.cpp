@@ -127,7 +127,7 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
   verify::Plan plan = search(look.usual, request, previous, random, budgets[0], look.pace, pool);
   std::array<verify::SearchExtent, 2> searches{{{plan.schedule, plan.generations}, {}}};
   if (!previous.empty()) keep_previous(look.usual, request, previous, plan);
-  const bool safe = plan.verification.free() && plan.verification.min_clearance >= request.margin;
+  const bool safe = keeps_margins(plan.path, request, look.usual.horizon(), plan.verification);
   if (!safe && settings_.emergency_share > settings_.acceleration_share) {
     look.emergency.prepare(request, via);
     verify::Plan harder = search(look.emergency, request, previous, random, budgets[1], look.pace, pool);
@@ -154,7 +154,7 @@ std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& pr
   const optimizer::Cost ideal = problem.cost_of(plan.path);
   const auto settle = [&](verify::Plan& settled) {
     settled.verification = verify_until(settled.path, request, problem.horizon());
-    if (!settled.verification.free() || settled.verification.min_clearance < request.margin) return false;
+    if (!keeps_margins(settled.path, request, problem.horizon(), settled.verification)) return false;
     conclude(request, problem, settled);
     return settled.verification.limits.within(settings_.keep_limits);
   };
@@ -251,7 +251,7 @@ std::optional<verify::Plan> HorizonPlanner::improved(const PathProblem& problem,
     plan.path = problem.motion(front_->solution(i));
     if (largest_distance(plan.path, previous, problem.horizon()) >= other_way) continue;
     plan.verification = verify_until(plan.path, request, problem.horizon());
-    if (plan.verification.free() && plan.verification.min_clearance >= request.margin) return plan;
+    if (keeps_margins(plan.path, request, problem.horizon(), plan.verification)) return plan;
   }
   return std::nullopt;
 }

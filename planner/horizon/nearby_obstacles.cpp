@@ -33,7 +33,7 @@ class TrackMotion {
         std::max(track_.velocity.squaredNorm(), geometry::predict_velocity(track_, time, trust_).squaredNorm()));
   }
   [[nodiscard]] double radius() const { return track_.radius; }
-  [[nodiscard]] double margin() const { return 0.0; }
+  [[nodiscard]] static double hard(const Clearance& clearance) { return clearance.hard; }
   [[nodiscard]] const base::Body& body() const { return track_.body; }
   [[nodiscard]] double until() const { return base::kInfinity; }
   /// How far it strays from even motion between two instants. differs: that an accelerated track does so, by at most
@@ -63,7 +63,7 @@ class PathMotion {
   [[nodiscard]] Vec3 position(double t) const { return path_.position(t); }
   [[nodiscard]] double fastest(double /*time*/) const { return fastest_; }
   [[nodiscard]] double radius() const { return path_.radius; }
-  [[nodiscard]] double margin() const { return path_.margin; }
+  [[nodiscard]] double hard(const Clearance& clearance) const { return path_.margin + clearance.hard; }
   [[nodiscard]] const base::Body& body() const { return path_.body; }
   [[nodiscard]] double until() const { return path_.until; }
   /// Both the path and even motion are straight between the path's points, so they are farthest apart at one of them.
@@ -94,6 +94,27 @@ class PathMotion {
   double fastest_;
 };
 
+/// The same of one that stands. That it is where it is said to be is all that may be wrong.
+class NoMotion {
+ public:
+  explicit NoMotion(const base::Track& track) : track_(track) {}
+
+  [[nodiscard]] const Vec3& position(double /*t*/) const { return track_.position; }
+  [[nodiscard]] static double fastest(double /*time*/) { return 0.0; }
+  [[nodiscard]] double radius() const { return track_.radius; }
+  [[nodiscard]] static double hard(const Clearance& clearance) { return clearance.hard_beside_standing; }
+  [[nodiscard]] const base::Body& body() const { return track_.body; }
+  [[nodiscard]] static double until() { return base::kInfinity; }
+  [[nodiscard]] static double bend(double /*begin*/, double /*end*/) { return 0.0; }
+  [[nodiscard]] static double most_bend(double /*step*/) { return 0.0; }
+  [[nodiscard]] double uncertainty(const Clearance& clearance, double /*t*/) const {
+    return std::min(clearance.limit, clearance.sigma_factor * track_.position_sigma);
+  }
+
+ private:
+  const base::Track& track_;
+};
+
 /// The solid of what moves so, during step n.
 template <typename Motion>
 NearbySolid solid_during(const Motion& motion, double step, std::size_t n) {
@@ -109,7 +130,8 @@ NearbySolid solid_during(const Motion& motion, double step, std::size_t n) {
 }  // namespace
 
 void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
-                            const Clearance& clearance, double step, std::span<const base::Box> where) {
+                            std::span<const base::Track> standing, const Clearance& clearance, double step,
+                            std::span<const base::Box> where) {
   groups_.clear();
   found_.clear();
   solids_.clear();
@@ -126,6 +148,7 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
     add(TrackMotion(track, clearance.acceleration_trust), clearance, step, where, everywhere);
   }
   for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, where, everywhere);
+  for (const base::Track& track : standing) add(NoMotion(track), clearance, step, where, everywhere);
 
   begin_.assign(where.size() + 1, 0);
   for (const std::size_t n : step_) ++begin_[n + 1];
@@ -140,7 +163,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
                           std::span<const base::Box> where, const base::Box& everywhere) {
   const double horizon = step * static_cast<double>(where.size());
   const double speed = motion.fastest(horizon);
-  const double hard = motion.radius() + motion.margin() + clearance.hard;
+  const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
   const double ever = hard + clearance.limit + speed * horizon + most_bend + kSlack;
   if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;

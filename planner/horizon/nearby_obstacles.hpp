@@ -20,6 +20,7 @@ struct Clearance {
   double track_acceleration = 0.0;              ///< what a track's acceleration may be off by, m/s²
   double limit = 0.0;                           ///< the most that uncertainty may ask for
   double acceleration_trust = base::kInfinity;  ///< as in predict_position
+  double hard_beside_standing = 0.0;            ///< `hard` of what stands
 };
 
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
@@ -48,10 +49,11 @@ struct NearbySolid {
 class NearbyObstacles {
  public:
   /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
-  /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
-  /// the known paths), and for each near known path O(steps · log(points)).
+  /// of the known paths. Within a step they keep their order, tracks first, what stands last. O(tracks + near tracks ·
+  /// steps + points of the known paths), and for each near known path O(steps · log(points)).
   void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
-             const Clearance& clearance, double step, std::span<const base::Box> where);
+             std::span<const base::Track> standing, const Clearance& clearance, double step,
+             std::span<const base::Box> where);
 
   /// The obstacles of one step, 0 <= step < where.size() of the last build(); valid until the next.
   [[nodiscard]] std::span<const NearbyObstacle> during(int step) const {

@@ -81,7 +81,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
                      const base::Budget& budget, base::WorkerPool& pool) {
   verify::Plan whole;
   PathRequest from = request.path;
-  std::vector<base::Track> now;
+  std::vector<base::Track> now, standing;
   std::vector<geometry::KnownPath> paths(request.path.paths.begin(), request.path.paths.end());
   from.paths = paths;
   base::TimedPath previous;
@@ -91,8 +91,10 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     now.clear();
     for (const base::Track& track : request.path.tracks)
       now.push_back(geometry::predict(track, t, from.acceleration_trust));
-    if (request.map != nullptr) request.map->near(reach_of(from, planner.settings()), 0.0, now);
+    standing.clear();
+    if (request.map != nullptr) request.map->near(reach_of(from, planner.settings()), 0.0, standing);
     from.tracks = now;
+    from.standing = standing;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const geometry::KnownPath& at_start = request.path.paths[i];
       paths[i].offset = at_start.offset + t;
@@ -101,6 +103,9 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     }
     PathRequest led = from;
     guide.lead(led, t, {request.map});
+    set_apart(guide.standing(), now, standing);
+    led.tracks = now;
+    led.standing = standing;
     verify::Plan part = planner.plan(led, previous, seed, number, budget, pool);
     if (part.status == verify::PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;

@@ -19,7 +19,10 @@ bool is_valid(const PathRequest& request) {
   using geometry::is_amount, geometry::is_within;
   return is_within(request.position, geometry::kFarthest) && is_within(request.velocity, geometry::kFastest) &&
          is_within(request.target, geometry::kFarthest) && geometry::is_valid(request.vehicle) &&
-         is_amount(request.margin) && is_amount(request.track_acceleration, geometry::kHardest) &&
+         is_amount(request.margin) && is_amount(request.standing_margin, base::kInfinity) &&
+         std::all_of(request.standing.begin(), request.standing.end(),
+                     [](const base::Track& t) { return geometry::is_valid(t) && geometry::is_at_rest(t); }) &&
+         is_amount(request.track_acceleration, geometry::kHardest) &&
          std::all_of(request.way.begin(), request.way.end(),
                      [](const Vec3& place) { return is_within(place, geometry::kFarthest); }) &&
          geometry::is_valid_world(request.volume, request.tracks, request.paths, request.acceleration_trust);
@@ -36,13 +39,30 @@ bool continues(const base::TimedPath& path, const PathRequest& request, double s
 
 verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until) {
   const auto check = [&](std::span<const base::TimedPoint> points) {
-    return verify::verify({points, request.tracks, 0.0, request.vehicle.radius, request.volume,
-                           request.acceleration_trust, until, request.paths});
+    return verify::verify({points,
+                           request.tracks,
+                           0.0,
+                           request.vehicle.radius,
+                           request.volume,
+                           request.acceleration_trust,
+                           until,
+                           request.paths,
+                           {},
+                           request.standing});
   };
   if (path.empty() || !std::isfinite(until) || path.back().t >= until) return check(path);
   base::TimedPath waiting = path;
   waiting.push_back({until, path.back().position, Vec3::Zero(), Vec3::Zero()});
   return check(waiting);
+}
+
+bool keeps_margins(const base::TimedPath& path, const PathRequest& request, double until,
+                   const verify::Verification& found) {
+  if (!found.free() || found.min_clearance >= request.margin) return found.free();
+  if (found.min_clearance < request.margin_beside_standing()) return false;
+  PathRequest others = request;
+  others.standing = {};
+  return verify_until(path, others, until).min_clearance >= request.margin;
 }
 
 bool arrives(const base::TimedPath& path, const PathRequest& request) {

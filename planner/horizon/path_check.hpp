@@ -8,8 +8,8 @@
 
 namespace jink::planner::horizon {
 
-/// Whether all numbers are ones to plan with (planner/geometry/validity.hpp), margin and track_acceleration not below
-/// 0. O(tracks + points of the paths).
+/// Whether all numbers are ones to plan with (planner/geometry/validity.hpp), margins and track_acceleration not below
+/// 0, and what stands does. O(tracks + points of the paths).
 [[nodiscard]] bool is_valid(const PathRequest& request);
 
 /// Whether a path can be the plan before, of which the request is the continuation: it is at the request's position at
@@ -20,6 +20,10 @@ namespace jink::planner::horizon {
 
 /// Checks a path among the request's obstacles up to a path time, s; a path that ends before waits at its end.
 [[nodiscard]] verify::Verification verify_until(const base::TimedPath& path, const PathRequest& request, double until);
+
+/// Whether a path, which verify_until() found to be so, is free and keeps both margins up to then.
+[[nodiscard]] bool keeps_margins(const base::TimedPath& path, const PathRequest& request, double until,
+                                 const verify::Verification& found);
 
 /// Whether a path ends at the request's target.
 [[nodiscard]] bool arrives(const base::TimedPath& path, const PathRequest& request);

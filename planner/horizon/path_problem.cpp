@@ -112,8 +112,12 @@ void PathProblem::unobstructed_flight() {
 }
 
 Clearance PathProblem::clearance() const {
-  return {request_.vehicle.radius + request_.margin, settings_.sigma_factor, request_.track_acceleration,
-          settings_.clearance_limit, request_.acceleration_trust};
+  return {request_.vehicle.radius + request_.margin,
+          settings_.sigma_factor,
+          request_.track_acceleration,
+          settings_.clearance_limit,
+          request_.acceleration_trust,
+          request_.vehicle.radius + request_.margin_beside_standing()};
 }
 
 // Where any motion can be. Each step moves the velocity along a straight line towards one that keeps the limits, by at
@@ -135,7 +139,7 @@ void PathProblem::predict_obstacles() {
     where_[index(step)] = {before.min.cwiseMin(now.min), before.max.cwiseMax(now.max)};
     before = now;
   }
-  obstacles_.build(request_.tracks, request_.paths, clearance(), settings_.step, where_);
+  obstacles_.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step, where_);
 }
 
 // The lanes that are left over repeat the last solution.
@@ -285,7 +289,7 @@ optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {
     where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
   }
   NearbyObstacles obstacles;
-  obstacles.build(request_.tracks, request_.paths, clearance(), settings_.step, where);
+  obstacles.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step, where);
   PointLanes<1> position;
   position.set(positions[0]);
   CostLanes<1> meter(scene_, obstacles, position);

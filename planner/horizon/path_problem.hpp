@@ -27,12 +27,17 @@ struct PathRequest {
   base::VehicleLimits vehicle;                   ///< size, speeds, acceleration
   std::span<const base::Track> tracks;           ///< obstacles whose motion is extrapolated
   std::span<const geometry::KnownPath> paths{};  ///< of vehicles that say where they will be
+  std::span<const base::Track> standing{};       ///< obstacles that stay where they are, for as long as is looked ahead
   double margin = 0.0;                           ///< kept from every obstacle on top of the radii
+  double standing_margin = base::kInfinity;      ///< kept from what stands, where that is less
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
   bool visit = false;                            ///< to have been at the target is enough: it need not stay free
   std::vector<Vec3> way{};  ///< corners of a way to the target that a search begins with, the target last; or none
+
+  /// Kept from what stands on top of the radii.
+  [[nodiscard]] double margin_beside_standing() const { return std::min(margin, standing_margin); }
 };
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where

@@ -2,9 +2,30 @@
 #include "planner/horizon/standing.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <unordered_set>
 #include <utility>
 
 namespace jink::planner::horizon {
+namespace {
+
+base::Track at_rest(base::Track track) {
+  track.velocity = track.acceleration = Vec3::Zero();
+  return track;
+}
+
+}  // namespace
+
+void set_apart(std::span<const std::uint64_t> ids, std::vector<base::Track>& tracks,
+               std::vector<base::Track>& standing) {
+  if (ids.empty()) return;
+  const std::unordered_set<std::uint64_t> stands(ids.begin(), ids.end());
+  std::erase_if(tracks, [&](const base::Track& track) {
+    if (!stands.contains(track.id)) return false;
+    standing.push_back(at_rest(track));
+    return true;
+  });
+}
 
 void Standing::set(std::span<const base::Track> tracks, const MapPlace& map, double sigmas) {
   const auto is_same = [](const base::Track& a, const base::Track& b) {
@@ -13,10 +34,7 @@ void Standing::set(std::span<const base::Track> tracks, const MapPlace& map, dou
   const std::span<const base::Track> before = tracked_.tracks();
   if (!std::equal(tracks.begin(), tracks.end(), before.begin(), before.end(), is_same)) {
     std::vector<base::Track> still;
-    for (const base::Track& track : tracks) {
-      still.push_back(track);
-      still.back().velocity = still.back().acceleration = Vec3::Zero();
-    }
+    std::transform(tracks.begin(), tracks.end(), std::back_inserter(still), at_rest);
     tracked_ = geometry::StaticMap(std::move(still));
     tracks_.solids = placed(tracked_);
   }

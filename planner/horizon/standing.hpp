@@ -2,6 +2,7 @@
 // What stands: how far places and lines are from it.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct MapPlace {
   double floor = -base::kInfinity;  ///< z in the local frame, m: what reaches no higher is the ground, not an obstacle
   double sigma = 0.0;               ///< standard deviation of the vehicle's own place in it, m
 };
+
+/// Moves the tracks of these ids to what stands, and takes their motion for none. O(tracks + ids).
+void set_apart(std::span<const std::uint64_t> ids, std::vector<base::Track>& tracks,
+               std::vector<base::Track>& standing);
 
 /// Obstacles at rest. Distances are to their surfaces, and to all that is between its slabs for a hull.
 class Standing {

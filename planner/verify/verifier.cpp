@@ -65,8 +65,10 @@ bool can_judge(const VerifierInput& input) {
   }
   const double last = std::min(input.path.back().t, input.until);
   const double time = std::max(std::abs(last - input.tracks_time), std::abs(input.path.front().t - input.tracks_time));
-  return std::all_of(input.tracks.begin(), input.tracks.end(),
-                     [&](const base::Track& t) { return geometry::is_valid(t) && stays_near(t, input, time); }) &&
+  const auto is_judged = [&](const base::Track& t) { return geometry::is_valid(t) && stays_near(t, input, time); };
+  return std::all_of(input.tracks.begin(), input.tracks.end(), is_judged) &&
+         std::all_of(input.standing.begin(), input.standing.end(),
+                     [&](const base::Track& t) { return is_judged(t) && geometry::is_at_rest(t); }) &&
          std::all_of(input.known.begin(), input.known.end(),
                      [&](const geometry::KnownPath& path) { return is_on_time(path, input, time); });
 }
@@ -332,7 +334,9 @@ Verification verify(const VerifierInput& input) {
   if (!result.valid) return result;
   result.inside_volume = stays_inside(input);
   PathCheck check(input);
-  for (const base::Track& track : input.tracks) check.add(TrackMotion(track, input), result);
+  for (const std::span<const base::Track> tracks : {input.tracks, input.standing}) {
+    for (const base::Track& track : tracks) check.add(TrackMotion(track, input), result);
+  }
   for (const geometry::KnownPath& known : input.known) check.add(KnownMotion(known, input), result);
   if (input.limits) result.limits = use_of_limits(input.path, *input.limits);
   return result;

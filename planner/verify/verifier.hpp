@@ -42,6 +42,7 @@ struct VerifierInput {
   double until = base::kInfinity;                ///< path time up to which obstacles and the volume count
   std::span<const geometry::KnownPath> known{};  ///< offsets and `until` count from `tracks_time`; margins do not count
   std::optional<FlightLimits> limits{};          ///< that the path must keep; none: not looked at
+  std::span<const base::Track> standing{};       ///< further tracks, of what neither moves nor turns
 };
 
 /// m: what a clearance is off by at most, where it is judged at all. Within 10 km of the origin, 600 s and at up to 1

@@ -181,8 +181,8 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
-  const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, margin, track_acceleration,
-               trust, stuck, visit, way] = job.request;
+  const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, request_standing, margin,
+               standing_margin, track_acceleration, trust, stuck, visit, way] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -191,7 +191,12 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   for (const double limit : {radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb})
     line_.exact(limit);
   line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
-  line_.key("margin").exact(margin).key("track_acceleration").exact(track_acceleration);
+  line_.key("margin")
+      .exact(margin)
+      .key("standing_margin")
+      .exact(standing_margin)
+      .key("track_acceleration")
+      .exact(track_acceleration);
   line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
   line_.key("way").open('[');
   for (const Vec3& place : way) line_.exact_vector(place);
@@ -204,6 +209,8 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
     if (body.solid) add_body(body);
     line_.close(']');
   }
+  line_.close(']').key("standing").open('[');
+  for (const std::uint64_t id : job.standing) line_.integer(id);
   line_.close(']').key("forecasts").open('[');
   for (const bridge::prediction::Forecast& forecast : job.forecasts) add_forecast(forecast);
   line_.close(']').key("paths").open('[');

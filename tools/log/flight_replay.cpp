@@ -203,6 +203,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   check_list(volume, "volume", 2);
   request.volume = {exact_vector(volume[0], "volume"), exact_vector(volume[1], "volume")};
   request.margin = exact(member(from, "margin"), "margin");
+  if (from.contains("standing_margin")) request.standing_margin = exact(from["standing_margin"], "standing_margin");
   request.track_acceleration = exact(member(from, "track_acceleration"), "track_acceleration");
   request.acceleration_trust = exact(member(from, "acceleration_trust"), "acceleration_trust");
   // Older logs have no such key.
@@ -212,9 +213,16 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
     for (const Json& place : list_of(from, "way")) request.way.push_back(exact_vector(place, "way"));
   }
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
-  if (!(request.margin >= 0.0) || !(request.track_acceleration >= 0.0) || !(request.acceleration_trust >= 0.0))
+  if (!(request.margin >= 0.0) || !(request.standing_margin >= 0.0) || !(request.track_acceleration >= 0.0) ||
+      !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
+  if (from.contains("standing")) {
+    for (const Json& id : list_of(from, "standing")) {
+      if (!id.is_number_unsigned()) refuse("\"standing\" holds what is no id");
+      job.standing.push_back(id.get<std::uint64_t>());
+    }
+  }
   for (const Json& item : list_of(from, "forecasts")) job.forecasts.push_back(forecast_of(item, job.tracks.size()));
   for (const Json& item : list_of(from, "paths")) job.paths.push_back(known_path_of(item));
   if (from.contains("map")) {
@@ -323,7 +331,8 @@ FlightComparison compare_plans(FlightRecording& recording, const ReplaySettings&
   FlightComparison result;
   while (std::optional<RecordedPlan> recorded = recording.next()) {
     bridge::companion::PlanJob& job = recorded->job;
-    const bridge::prediction::Obstacles obstacles = bridge::companion::set_obstacles(job, settings.settings.horizon);
+    const bridge::prediction::Obstacles obstacles = bridge::companion::obstacles_of(job, settings.settings.horizon);
+    bridge::companion::set_obstacles(job, obstacles);
     change(job.request, settings);
     // Searches go as far as the recorded ones did, unless their length is what was changed.
     const bool by_count = settings.settings.horizon.generations == settings.recorded.horizon.generations &&

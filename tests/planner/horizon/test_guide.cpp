@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
 #include "planner/base/solid.hpp"
+#include "planner/geometry/validity.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -156,20 +159,28 @@ TEST(Guide, LeadsOutOfADeadEndToPlacesInSight) {
   EXPECT_LT(flown, 36.0);
 }
 
+// Beside what stands; what moves beside the door keeps all of it.
 TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
-  const std::vector<base::Track> tracks = numbered(wall(10, 0.0, 1.3));
+  std::vector<base::Track> tracks = numbered(wall(10, 0.0, 1.3));
+  tracks.push_back(box({10, 3, 2}, {0.5, 0.5, 1.8}));
+  tracks.back().id = 77;
+  tracks.back().velocity = {0, 1, 0};
   PathRequest request = guide_request(tracks, {8, 0.3, 2});
   Guide guide({}, Guide::Knowledge::kWhole);
   guide.lead(request, 0.0);
   ASSERT_FALSE(guide.way().empty());
-  EXPECT_GE(request.margin, 0.1);
-  EXPECT_LT(request.margin, 0.3);
-  EXPECT_NEAR(request.vehicle.cruise_speed, 3.0 * request.margin / kKept, 1e-12);
+  EXPECT_EQ(request.margin, kKept);
+  EXPECT_GE(request.standing_margin, 0.1);
+  EXPECT_LT(request.standing_margin, 0.3);
+  EXPECT_NEAR(request.vehicle.cruise_speed, 3.0 * request.standing_margin / kKept, 1e-12);
+  EXPECT_EQ(std::vector<std::uint64_t>(guide.standing().begin(), guide.standing().end()),
+            (std::vector<std::uint64_t>{1, 2}));
   // Far from it nothing gives way.
   request = guide_request(tracks, {0, 0.3, 2});
   guide = Guide({}, Guide::Knowledge::kWhole);
   guide.lead(request, 0.0);
-  EXPECT_EQ(request.margin, kKept);
+  EXPECT_EQ(request.margin_beside_standing(), kKept);
+  EXPECT_TRUE(guide.standing().empty());
   EXPECT_EQ(request.vehicle.cruise_speed, 3.0);
   // Who does not know where the door is but to a decimetre or two does not go through.
   std::vector<base::Track> blurred = tracks;
@@ -178,7 +189,7 @@ TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
   guide = Guide({}, Guide::Knowledge::kWhole);
   guide.lead(request, 0.0);
   EXPECT_TRUE(guide.way().empty());
-  EXPECT_EQ(request.margin, kKept);
+  EXPECT_EQ(request.margin_beside_standing(), kKept);
 }
 
 TEST(Guide, PassesByTheMapAsByTracks) {
@@ -215,6 +226,62 @@ TEST(Guide, RemembersWhatStandsOutOfSight) {
   EXPECT_TRUE(found);
   EXPECT_TRUE(led(now + 20.0, {})) << "nothing is seen at all";
   EXPECT_FALSE(led(now + 21.0, {far})) << "who sees as far would see the walls";
+}
+
+/// How long dead_end() must have been tracked, s, until it counts as standing beside something that moves. `change` is
+/// made to each of its tracks at a time.
+double settled_after(const std::function<void(double now, base::Track&)>& change) {
+  base::Track mover;
+  mover.id = 99;
+  mover.radius = 0.5;
+  mover.position = {3, -8, 2};
+  mover.velocity = {1, 0, 0};
+  Guide guide({}, Guide::Knowledge::kSensed);
+  for (int n = 0; n < 120; ++n) {
+    std::vector<base::Track> tracks = dead_end();
+    for (base::Track& track : tracks) change(0.05 * n, track);
+    tracks.push_back(mover);
+    PathRequest request = guide_request(tracks);
+    guide.lead(request, 0.05 * n);
+    if (!guide.way().empty()) return 0.05 * n;
+  }
+  return base::kInfinity;
+}
+
+TEST(Guide, TellsWhatStandsFromWhatMovesTrackByTrack) {
+  const double exactly = settled_after([](double, base::Track&) {});
+  EXPECT_LT(exactly, 4.0) << "a second, and the search";
+  // In noise it takes two seconds longer.
+  const double in_noise = settled_after([](double now, base::Track& track) {
+    track.velocity_sigma = 0.15;
+    track.position_sigma = 0.05;
+    track.velocity = {0.2 * std::sin(9.0 * now), 0.2 * std::cos(7.0 * now), 0};
+    track.position.x() += 0.03 * std::sin(11.0 * now);
+  });
+  EXPECT_NEAR(in_noise, exactly + 2.0, 0.3);
+  // What creeps does not stand, however slow, nor does what turns, nor what swings where it turns back.
+  EXPECT_EQ(settled_after([](double now, base::Track& track) {
+              track.velocity_sigma = 0.15;
+              track.position.x() += 0.25 * now;
+              track.velocity = {0.25, 0, 0};
+            }),
+            base::kInfinity);
+  EXPECT_EQ(settled_after([](double, base::Track& track) { track.body.yaw_rate = 0.01; }), base::kInfinity);
+  EXPECT_EQ(settled_after([](double, base::Track& track) { track.acceleration = {0, 0.3, 0}; }), base::kInfinity);
+}
+
+TEST(SetApart, MovesTracksToWhatStandsWithoutTheirMotion) {
+  std::vector<base::Track> tracks = dead_end();
+  tracks[1].velocity = {0.1, 0, 0};
+  tracks[1].acceleration = {0, 0.1, 0};
+  std::vector<base::Track> standing = numbered({box({5, 0, 0}, {1, 1, 1})});
+  set_apart(std::vector<std::uint64_t>{2, 3, 50}, tracks, standing);
+  ASSERT_EQ(tracks.size(), 1U);
+  EXPECT_EQ(tracks[0].id, 1U);
+  ASSERT_EQ(standing.size(), 3U);
+  EXPECT_EQ(standing[1].id, 2U);
+  EXPECT_TRUE(geometry::is_at_rest(standing[1]));
+  EXPECT_EQ(standing[2].position, dead_end()[2].position);
 }
 
 TEST(Guide, LeavesBadRequestsAndGuidelessSettingsAlone) {

@@ -101,6 +101,35 @@ TEST(HorizonPlanner, PlansAroundWhatBlocksTheStraightLine) {
   }
 }
 
+// A gap of 1 m between two spheres, which the vehicle, 0.6 m wide, passes where they stand and less is to be kept; not
+// where a third that moves is as near.
+TEST(HorizonPlanner, KeepsLessFromWhatStandsThanFromWhatMoves) {
+  const std::vector<base::Track> posts{sphere(1, {5, 2.5, 2}, {0, 0, 0}, 2.0), sphere(2, {5, -2.5, 2}, {0, 0, 0}, 2.0)};
+  PathRequest r = request({});
+  r.volume = {{-10, -2, 1}, {30, 2, 3}};
+  r.standing = posts;
+  r.margin = 0.35;
+  r.standing_margin = 0.15;
+  const base::TimedPath straight{{0, r.position, r.velocity, Vec3::Zero()},
+                                 {20.0 / 3.0, r.target, r.velocity, Vec3::Zero()}};
+  const verify::Verification seen = verify_until(straight, r, base::kInfinity);
+  EXPECT_NEAR(seen.min_clearance, 0.2, 1e-9);
+  EXPECT_TRUE(keeps_margins(straight, r, base::kInfinity, seen));
+  const verify::Plan plan = plan_once(r);
+  EXPECT_NE(plan.status, verify::PlanStatus::kBlocked);
+  EXPECT_FALSE(plan.emergency);
+  EXPECT_NEAR(plan.verification.min_clearance, 0.2, 0.05);
+  EXPECT_GT(plan.path.back().position.x(), 15.0);
+  const std::vector<base::Track> beside{sphere(3, {9, 1.0, 2}, {-0.1, 0, 0}, 0.5)};
+  r.tracks = beside;
+  const verify::Verification among = verify_until(straight, r, base::kInfinity);
+  EXPECT_TRUE(among.free());
+  EXPECT_FALSE(keeps_margins(straight, r, base::kInfinity, among));
+  r.tracks = {};
+  r.standing_margin = 0.25;
+  EXPECT_FALSE(keeps_margins(straight, r, base::kInfinity, seen));
+}
+
 TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
   const std::vector<base::Track> none;
   const PathRequest r = request(none);

@@ -14,6 +14,7 @@
 #include "planner/base/random.hpp"
 #include "planner/base/solid.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/standing.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -338,6 +339,15 @@ TEST(PathProblem, WaypointsStayInTheVolumeAndLeavingItIsAViolation) {
   }
 }
 
+/// What it costs to come as near as `distance` where at least `hard` is asked for, and `extra` more is better.
+void add_to_cost(double distance, double hard, double extra, double weight, optimizer::Cost& cost) {
+  cost.violation += weight * std::max(0.0, hard - distance);
+  if (extra > 0.0) {
+    const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+    cost.f[2] += weight * depth * depth;
+  }
+}
+
 /// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition.
 void add_to_cost(double distance, const base::Track& track, double t, const base::HorizonSettings& s,
                  const PathRequest& r, optimizer::Cost& cost) {
@@ -345,12 +355,7 @@ void add_to_cost(double distance, const base::Track& track, double t, const base
   const double ahead = t + s.step + track.age;
   const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
   const double extra = std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
-  const double hard = r.vehicle.radius + r.margin;
-  cost.violation += weight * std::max(0.0, hard - distance);
-  if (extra > 0.0) {
-    const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
-    cost.f[2] += weight * depth * depth;
-  }
+  add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost);
 }
 
 /// f3 and violation by their definition, from every track, nothing left out.
@@ -367,6 +372,12 @@ optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSe
       const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d)) - track.radius;
       add_to_cost(distance, track, t, s, r, cost);
     }
+    for (const base::Track& track : r.standing) {
+      const double distance =
+          std::sqrt(geometry::swept_distance_squared(from, to, track.position, track.position)) - track.radius;
+      add_to_cost(distance, r.vehicle.radius + r.margin_beside_standing(),
+                  std::min(s.clearance_limit, s.sigma_factor * track.position_sigma), s.step / (0.5 + t), cost);
+    }
   }
   return cost;
 }
@@ -375,6 +386,7 @@ std::vector<base::Track> random_tracks(base::RandomStream& random) {
   std::vector<base::Track> tracks;
   for (std::uint64_t id = 0; id < 110; ++id) {  // several chunks of the inner loop
     base::Track track = sphere(random_vector(random, 25.0), random_vector(random, 4.0), random.uniform(0.2, 1.0));
+    track.id = id;
     track.acceleration = random_vector(random, 2.0);
     track.position_sigma = random.uniform(0.0, 0.1);
     track.velocity_sigma = random.uniform(0.0, 0.1);
@@ -392,11 +404,16 @@ TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
   int violated = 0;
   std::size_t kept = 0;
   for (int round = 0; round < 60; ++round) {
-    const std::vector<base::Track> tracks = random_tracks(random);
+    std::vector<base::Track> tracks = random_tracks(random);
+    std::vector<base::Track> standing;
+    set_apart(round % 3 == 0 ? std::vector<std::uint64_t>() : std::vector<std::uint64_t>{3, 4, 5, 30, 40, 41, 100},
+              tracks, standing);
     PathRequest r = request();
     r.velocity = random_vector(random, 2.0);
     r.tracks = tracks;
+    r.standing = standing;
     r.margin = 0.35;
+    r.standing_margin = round % 2 == 0 ? 0.15 : base::kInfinity;
     r.track_acceleration = 0.4;
     r.acceleration_trust = round % 2 == 0 ? 0.7 : base::kInfinity;
     problem.prepare(r);

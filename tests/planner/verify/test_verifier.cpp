@@ -44,6 +44,26 @@ TEST(Verifier, FindsTheClearanceToAStaticSphere) {
   EXPECT_TRUE(v.free());
 }
 
+// What stands counts as tracks do, and only what does is taken for it.
+TEST(Verifier, FindsTheClearanceToWhatStands) {
+  const base::TimedPath path = line({0, 0, 0}, {10, 0, 0}, 5.0);
+  const std::vector<base::Track> tracks{moving({4, 5, 0}, {0, 0, 0}, 1.0, 41)};
+  std::vector<base::Track> standing{moving({6, 3, 0}, {0, 0, 0}, 1.0, 42)};
+  VerifierInput input;
+  input.path = path;
+  input.tracks = tracks;
+  input.standing = standing;
+  input.vehicle_radius = 0.5;
+  const Verification v = verify(input);
+  EXPECT_NEAR(v.min_clearance, 1.5, 1e-9);
+  EXPECT_EQ(v.nearest_id, 42U);
+  EXPECT_TRUE(v.free());
+  standing[0].position = {6, 0, 0};
+  EXPECT_FALSE(verify(input).free());
+  standing[0] = moving({6, 3, 0}, {0, 0.1, 0}, 1.0, 42);
+  EXPECT_FALSE(verify(input).valid);
+}
+
 // Head-on at 2 + 3 m/s from 20 m: contact where the gap is 1.5 m: t = 18.5/5 = 3.7.
 TEST(Verifier, FindsFirstContactAndItsSpeedHeadOn) {
   const Verification v = check(line({0, 0, 0}, {20, 0, 0}, 10.0), {moving({20, 0, 0}, {-3, 0, 0}, 1.0)});
