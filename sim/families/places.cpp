@@ -36,7 +36,7 @@ bool is_free_walk(const world::World& world, const config::WaypointsMotion& walk
 }
 
 Vec3 quarter_turned(const Vec3& v) {
-  return {-v.y(), v.x(), v.z()};
+  return {0.0 - v.y(), v.x(), v.z()};  // of 0 it makes no -0
 }
 
 void turn_a_quarter(config::Obstacle& obstacle) {

@@ -18,7 +18,7 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr std::uint64_t kSeeds = 12;
+constexpr std::uint64_t kPlaces = 12;
 
 class KnownPlace : public ::testing::TestWithParam<std::string_view> {};
 
@@ -72,7 +72,7 @@ double overlap(const config::Obstacle& a, const config::Obstacle& b, double t) {
 }
 
 TEST_P(KnownPlace, StandsWhereTheMapSays) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     const config::Scenario scenario = make_world(GetParam(), seed);
     EXPECT_FALSE(scenario.map.empty()) << seed;
     for (const config::Obstacle& solid : scenario.map) {
@@ -84,7 +84,7 @@ TEST_P(KnownPlace, StandsWhereTheMapSays) {
 }
 
 TEST_P(KnownPlace, LeavesRoomAtStartAndTarget) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     const config::Scenario scenario = make_world(GetParam(), seed);
     const world::World map(map_alone(scenario));
     EXPECT_GE(map.clearance(scenario.start, 0.0), kMapClearance) << seed;
@@ -94,7 +94,7 @@ TEST_P(KnownPlace, LeavesRoomAtStartAndTarget) {
 
 // Not for ever, at least: somebody could arrive there.
 TEST_P(KnownPlace, TheTargetIsLeft) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     const config::Scenario scenario = make_world(GetParam(), seed);
     const world::World movers(without_map(scenario));
     int free = 0;
@@ -126,7 +126,7 @@ TEST_P(KnownPlace, NothingRunsIntoAnything) {
 }
 
 TEST_P(KnownPlace, PeopleWalkOnTheGround) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     for (const config::Obstacle& obstacle : make_world(GetParam(), seed).obstacles) {
       const auto* person = std::get_if<config::CylinderShape>(&obstacle.shape);
       if (person == nullptr) continue;
@@ -157,7 +157,7 @@ TEST(KnownPlaces, AreThoseThatHaveAMap) {
 template <typename Shape, typename Motion>
 std::uint64_t worlds_with(std::string_view family) {
   std::uint64_t count = 0;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     const config::Scenario scenario = make_world(family, seed);
     count += std::any_of(scenario.obstacles.begin(), scenario.obstacles.end(),
                          [](const config::Obstacle& obstacle) {
@@ -172,17 +172,17 @@ std::uint64_t worlds_with(std::string_view family) {
 
 TEST(KnownPlaces, HaveWhatTheyAreNamedAfter) {
   using config::BoxShape, config::CylinderShape, config::LinearMotion, config::WaypointsMotion;
-  EXPECT_EQ((worlds_with<BoxShape, LinearMotion>("street")), kSeeds);
-  EXPECT_EQ((worlds_with<BoxShape, LinearMotion>("truck")), kSeeds);
-  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("lift_door")), kSeeds);
-  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("sliding_gate")), kSeeds);
-  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("racks")), kSeeds);
+  EXPECT_EQ((worlds_with<BoxShape, LinearMotion>("street")), kPlaces);
+  EXPECT_EQ((worlds_with<BoxShape, LinearMotion>("truck")), kPlaces);
+  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("lift_door")), kPlaces);
+  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("sliding_gate")), kPlaces);
+  EXPECT_EQ((worlds_with<BoxShape, WaypointsMotion>("racks")), kPlaces);
   EXPECT_GE((worlds_with<CylinderShape, WaypointsMotion>("office")), 10U);
   EXPECT_GE((worlds_with<CylinderShape, WaypointsMotion>("street")), 10U);
 }
 
 TEST(KnownPlaces, TrunksOfTheForestAreApartAndOfTheirSize) {
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     std::vector<Vec3> feet;
     for (const config::Obstacle& solid : make_world("forest", seed).map) {
       const auto* trunk = std::get_if<config::CylinderShape>(&solid.shape);
