@@ -115,5 +115,13 @@ void build_daidalus_overtaking(config::Scenario& scenario, RandomStream& random)
 void build_mader(config::Scenario& scenario, RandomStream& random, int count);
 void build_sando(config::Scenario& scenario, RandomStream& random, int count);
 void build_antipodal(config::Scenario& scenario, RandomStream& random);
+void build_street(config::Scenario& scenario, RandomStream& random);
+void build_office(config::Scenario& scenario, RandomStream& random);
+void build_forest(config::Scenario& scenario, RandomStream& random);
+void build_truck(config::Scenario& scenario, RandomStream& random);
+void build_lift_door(config::Scenario& scenario, RandomStream& random);
+void build_racks(config::Scenario& scenario, RandomStream& random);
+void build_sliding_gate(config::Scenario& scenario, RandomStream& random);
+void build_wires(config::Scenario& scenario, RandomStream& random);
 
 }  // namespace jink::sim::families

@@ -133,6 +133,7 @@ struct Family {
   bool linear;
   Build build;
   bool blocked = true;
+  bool map = false;
 };
 
 template <int count>
@@ -175,7 +176,15 @@ constexpr std::array kFamilies = {Family{"crossing", true, build_crossing},
                                   Family{"mader_250", false, build_mader_of<250>, false},
                                   Family{"sando_50", false, build_sando_of<50>, false},
                                   Family{"sando_100", false, build_sando_of<100>, false},
-                                  Family{"sando_200", false, build_sando_of<200>, false}};
+                                  Family{"sando_200", false, build_sando_of<200>, false},
+                                  Family{"street", false, build_street, true, true},
+                                  Family{"office", false, build_office, true, true},
+                                  Family{"forest", false, build_forest, true, true},
+                                  Family{"truck", true, build_truck, true, true},
+                                  Family{"lift_door", false, build_lift_door, true, true},
+                                  Family{"racks", false, build_racks, true, true},
+                                  Family{"sliding_gate", false, build_sliding_gate, true, true},
+                                  Family{"wires", false, build_wires, true, true}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kFamilies.size()> names;
@@ -213,8 +222,11 @@ bool hits_straight(const world::World& world) {
 }
 
 /// Of all vehicles, from the obstacles and from each other.
-bool starts_are_clear(const world::World& world) {
-  const std::vector<config::ScenarioVehicle> team = config::all_vehicles(world.scenario());
+bool starts_are_clear(const config::Scenario& scenario) {
+  config::Scenario without_map = scenario;
+  without_map.map.clear();
+  const world::World world(without_map);
+  const std::vector<config::ScenarioVehicle> team = config::all_vehicles(scenario);
   for (std::size_t k = 0; k < team.size(); ++k) {
     if (world.clearance(team[k].start, 0.0, team[k].vehicle.radius) < kStartClearance) return false;
     for (std::size_t j = 0; j < k; ++j) {
@@ -223,6 +235,14 @@ bool starts_are_clear(const world::World& world) {
     }
   }
   return true;
+}
+
+/// The map leaves room where the vehicle begins and where it goes to.
+bool ends_are_roomy(const config::Scenario& scenario) {
+  config::Scenario map_alone = scenario;
+  map_alone.obstacles.clear();
+  const world::World world(map_alone);
+  return std::min(world.clearance(scenario.start, 0.0), world.clearance(scenario.target, 0.0)) >= kMapClearance;
 }
 
 }  // namespace
@@ -241,6 +261,11 @@ bool blocks_straight_line(std::string_view family) {
   return known != nullptr && known->blocked;
 }
 
+bool has_map(std::string_view family) {
+  const Family* known = find_family(family);
+  return known != nullptr && known->map;
+}
+
 // The builders aim to block the line and to leave the start free. Where a draw fails in that, the next one is taken.
 config::Scenario make_world(std::string_view family, std::uint64_t seed) {
   constexpr std::uint64_t kMostAttempts = 1000;
@@ -255,8 +280,8 @@ config::Scenario make_world(std::string_view family, std::uint64_t seed) {
     known->build(scenario, random);
     if (scenario.time_limit == 0.0)
       scenario.time_limit = 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
-    const world::World world(scenario);
-    if (starts_are_clear(world) && (!known->blocked || hits_straight(world))) return scenario;
+    if (!starts_are_clear(scenario) || !ends_are_roomy(scenario)) continue;
+    if (!known->blocked || hits_straight(world::World(scenario))) return scenario;
   }
   throw std::logic_error("no world of the family " + std::string(family) + " for seed " + std::to_string(seed));
 }

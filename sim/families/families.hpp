@@ -20,9 +20,11 @@ inline constexpr double kStraightBraking = 2.0;       ///< m/s²
 /// Every obstacle keeps this distance in metres from each vehicle's sphere at its start, at t = 0, surface to surface,
 /// and so do the vehicles of a team from each other.
 inline constexpr double kStartClearance = 1.5;
+/// What is on the map keeps this distance from the vehicle's sphere at its start and at its target.
+inline constexpr double kMapClearance = 0.5;
 
-/// On the straight flight, where it is blocked, the vehicle's sphere overlaps an obstacle or another vehicle by at
-/// least this much, in metres.
+/// On the straight flight, where it is blocked, the vehicle's sphere overlaps an obstacle, the map or another vehicle
+/// by at least this much, in metres.
 inline constexpr double kStraightOverlap = 0.1;
 
 /// The names that make_world() knows, in a fixed order.
@@ -44,6 +46,18 @@ inline constexpr double kStraightOverlap = 0.1;
 /// From the literature, with cubes of 0.8 m and a vehicle at v 5, a 20, j 100 that cruises at its speed limit:
 /// mader_50, mader_100, mader_250 (75 m, trefoils that peak at 5.3 m/s and cubes that swing in z) and sando_50,
 /// sando_100, sando_200 (105 m, 100 s, wider and slower trefoils and standing cubes).
+///
+/// Known places, with their shapes: what stands is the scenario's map, what moves are its obstacles. People are
+/// cylinders that walk there and back at 0.8 to 1.8 m/s, with stops; neither they nor what drives or slides runs into
+/// anything but the vehicle.
+/// - street: houses, trees, lamps and parked cars; cars at up to 8.9 m/s both ways, people who cross.
+/// - office: rooms at a corridor, doors of 1.3 m by 2.1 m or more, ceiling, furniture; people from room to room.
+/// - forest: trunks of 0.3 to 0.8 m, their feet 2.4 m apart or more, some fallen; people.
+/// - truck: out of an alley over a road into another; trucks of 7 to 9 m at 3 to 8 m/s.
+/// - lift_door: through a lift with a door of 1.3 to 1.7 m to either side, each with a time of its own.
+/// - racks: a storage hall, rows of racks with a passage each; forklifts, people.
+/// - sliding_gate: a hall parted by a wall with a gate that opens and shuts; forklifts drive through, people.
+/// - wires: overhead lines and fences of wires 1 to 3 cm thick, masts with stays; people.
 [[nodiscard]] std::span<const std::string_view> world_families();
 
 /// Whether every obstacle of the family's worlds keeps a constant velocity for ever, so that a track of t = 0 tells all
@@ -54,11 +68,14 @@ inline constexpr double kStraightOverlap = 0.1;
 /// the literature, whose obstacles are drawn without regard to it. False for an unknown family.
 [[nodiscard]] bool blocks_straight_line(std::string_view family);
 
+/// Whether it is one of the known places, whose worlds have a map. False for an unknown family.
+[[nodiscard]] bool has_map(std::string_view family);
+
 /// A world of that family: the same for the same arguments. ENU, m, s; named "family-seed", with perfect sensing
 /// (Tier::kPerfect). For the AR.Drone, 15 to 40 m from start to target, with the default time limit, unless the family
-/// is from the literature. It passes the checks of config::load_scenario; kStartClearance and kStraightOverlap hold.
-/// Throws std::invalid_argument for an unknown family. Deterministic; the C library's sine and cosine have a say in the
-/// last bit.
+/// is from the literature. It passes the checks of config::load_scenario; kStartClearance, kMapClearance and
+/// kStraightOverlap hold. Throws std::invalid_argument for an unknown family. Deterministic; the C library's sine and
+/// cosine have a say in the last bit.
 [[nodiscard]] config::Scenario make_world(std::string_view family, std::uint64_t seed);
 
 /// How well obstacles are seen and the vehicle knows where it is.

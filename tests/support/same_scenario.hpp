@@ -38,6 +38,7 @@ inline void expect_same(const config::Scenario& a, const config::Scenario& b) {
   EXPECT_EQ(a.wind, b.wind);
   EXPECT_EQ(a.estimate, b.estimate);
   EXPECT_EQ(a.obstacles, b.obstacles);
+  EXPECT_EQ(a.map, b.map);
   EXPECT_EQ(a.faults, b.faults);
   const auto all_a = config::all_vehicles(a);
   const auto all_b = config::all_vehicles(b);

@@ -54,7 +54,7 @@ void save_failure(const FailureOptions& options, const Job& job, const FlightRec
 /// The command that flies a failed flight again and shows it, for a shell in today's working folder.
 [[nodiscard]] std::string replay_command(const std::filesystem::path& out, const FlightRecord& record);
 
-/// The oracle's answer. Seconds at most for most worlds; with moving boxes and hulls tens of seconds.
+/// The oracle's answer. Seconds at most for most worlds.
 [[nodiscard]] Verdict judge_world(const World& world);
 
 }  // namespace jink::tools::lab::arena

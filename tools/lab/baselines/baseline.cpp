@@ -6,7 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/base/solid.hpp"
 #include "planner/horizon/path_check.hpp"
+#include "planner/verify/solid_contact.hpp"
 
 namespace jink::tools::lab::baselines {
 namespace {
@@ -15,6 +17,8 @@ constexpr double kClockRounding = 1e-9;  // s, of the companion's clock
 constexpr double kSlope = 0.1;           // s, over which a known path's present velocity is taken
 constexpr double kSameTime = 1e-6;       // s, between contacts that count as simultaneous
 constexpr double kAtTarget = 1e-6;       // m
+constexpr double kSlopeStep = 1e-4;      // m, over which the slope of a distance is taken
+constexpr double kBeneath = 0.01;        // m, at least, from what one is in to the middle of its nearest part
 
 }  // namespace
 
@@ -52,10 +56,38 @@ std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::Pat
   }
   for (planner::base::Track& sphere : spheres) {
     const double sigma = std::hypot(sphere.position_sigma, sphere.velocity_sigma * sphere.age);
+    if (sphere.body.solid) sphere.radius = sphere.body.solid->reach();
     sphere.radius +=
         request.vehicle.radius + request.margin + std::min(settings.clearance_limit, settings.sigma_factor * sigma);
   }
   return spheres;
+}
+
+double body_gap(const planner::base::Track& inflated) {
+  return inflated.radius - inflated.body.solid->reach();
+}
+
+double body_distance(const planner::base::Track& track, const Vec3& center, double t, const Vec3& point) {
+  return planner::verify::solid_distance(track.body.later(t), point - center);
+}
+
+planner::base::Track nearest_part(const planner::base::Track& inflated, const Vec3& point) {
+  const auto distance = [&](const Vec3& place) { return body_distance(inflated, inflated.position, 0.0, place); };
+  Vec3 outwards;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kSlopeStep * Vec3::Unit(axis);
+    outwards[axis] = distance(point + step) - distance(point - step);
+  }
+  // In the middle of a hull there is no slope.
+  if (outwards.norm() < kSlopeStep) outwards = point - inflated.position;
+  outwards = outwards.norm() > 0.0 ? outwards.normalized() : Vec3::UnitZ();
+  planner::base::Track part = inflated;
+  part.position = point - std::max(distance(point), kBeneath) * outwards;
+  const Vec3 arm = part.position - inflated.position;
+  part.velocity += inflated.body.yaw_rate * Vec3(-arm.y(), arm.x(), 0.0);
+  part.radius = body_gap(inflated);
+  part.body = {};
+  return part;
 }
 
 planner::verify::Verification check(const planner::base::TimedPath& path, const planner::horizon::PathRequest& request,

@@ -39,9 +39,21 @@ class BaselineTask final : public bridge::companion::PlannerTask {
 
 /// The request's tracks, as spheres that the vehicle's centre must not enter: grown by the vehicle's radius, the margin
 /// and `sigma_factor` standard deviations of the position as it is now (at most `clearance_limit`), which is what jink
-/// asks for too. Vehicles that told their paths follow, each as a track at its present velocity.
+/// asks for too. Vehicles that told their paths follow, each as a track at its present velocity. Of a body the sphere
+/// is as large as it reaches and as much larger as all are: body_gap() tells how much that is.
 [[nodiscard]] std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::PathRequest& request,
                                                                    const planner::base::HorizonSettings& settings);
+
+/// m, from the surface of an inflated body to where the vehicle's centre may be. Precondition: a body.
+[[nodiscard]] double body_gap(const planner::base::Track& inflated);
+
+/// From a point to the surface of a track's body `t` seconds later, when the track's centre is there, m; negative in a
+/// box, a cylinder or a capsule, 0 in a hull.
+[[nodiscard]] double body_distance(const planner::base::Track& track, const Vec3& center, double t, const Vec3& point);
+
+/// An inflated body as one sees it who looks from `point`: a sphere of body_gap() about the nearest point of its
+/// surface, which moves as that point does. From within, a sphere that is left by the nearest way out.
+[[nodiscard]] planner::base::Track nearest_part(const planner::base::Track& inflated, const Vec3& point);
 
 /// Checks `path` against the request's tracks and known paths up to path time `until`, with the vehicle's sphere
 /// larger by `margin`. A path that ends before waits at its end.

@@ -79,7 +79,8 @@ planner::verify::Plan OrcaPilot::plan(const bridge::companion::PlanJob& job) {
 
   std::vector<HalfSpace> half_spaces;
   bool urgent = false;
-  for (const planner::base::Track& sphere : inflated_obstacles(request, settings_)) {
+  for (const planner::base::Track& obstacle : inflated_obstacles(request, settings_)) {
+    const planner::base::Track sphere = obstacle.body.solid ? nearest_part(obstacle, request.position) : obstacle;
     const Vec3 offset = sphere.position - request.position;
     const double closing = request.vehicle.max_speed + sphere.velocity.norm();
     if (offset.norm() - sphere.radius > closing * orca_.time_horizon) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/base/solid.hpp"
 #include "tools/lab/baselines/path_builder.hpp"
 
 namespace jink::tools::lab::baselines {
@@ -91,9 +92,12 @@ SpaceTimeProblem RrtPilot::problem(const planner::horizon::PathRequest& request,
     return (sphere.position - request.position).norm() - sphere.radius > reach + horizon.lateral_range;
   });
   for (planner::base::Track& sphere : spheres) {
-    const double distance = (sphere.position - request.position).norm() - kTouching;
+    const double reach = sphere.body.solid ? sphere.body.solid->reach() : 0.0;
+    const double distance = sphere.body.solid ? body_distance(sphere, sphere.position, 0.0, request.position)
+                                              : (sphere.position - request.position).norm();
     // Already too near: no nearer.
-    sphere.radius = std::min(sphere.radius + kCornerMargin, std::max(distance, kTouching));
+    const double gap = std::min(sphere.radius - reach + kCornerMargin, std::max(distance - kTouching, kTouching));
+    sphere.radius = reach + gap;
   }
   SpaceTimeProblem problem;
   problem.start = request.position;

@@ -19,6 +19,7 @@
 #include "planner/base/random.hpp"
 #include "planner/geometry/geometry.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
+#include "tools/lab/baselines/baseline.hpp"
 
 namespace jink::tools::lab::baselines {
 namespace {
@@ -51,6 +52,35 @@ bool in_time(const SpaceTimeProblem& problem, const SpaceTime& from, const Space
   const Vec3 way = to.position - from.position;
   return t > kRounding && way.norm() <= problem.speed * t + kRounding &&
          std::abs(way.z()) <= problem.climb * t + kRounding;
+}
+
+/// Of the straight way past a body that moves evenly: where it is at a time, and how far the vehicle is from it.
+struct Passage {
+  SpaceTime from, to;  ///< of the vehicle
+  Vec3 begin, end;     ///< of the body's centre
+  const planner::base::Track& body;
+
+  [[nodiscard]] double distance(double share) const {
+    const Vec3 place = from.position + share * (to.position - from.position);
+    return body_distance(body, begin + share * (end - begin), from.t + share * (to.t - from.t), place);
+  }
+  /// The most that the distance changes from one share of the way to another.
+  [[nodiscard]] double change(double shares) const {
+    const double turning = std::abs(body.body.yaw_rate) * (to.t - from.t) * body.radius;
+    return shares * ((to.position - from.position - end + begin).norm() + turning);
+  }
+};
+
+/// Whether it keeps the body's gap between two shares of the way: nowhere is it less than falling from both ends until
+/// they meet gives.
+bool keeps_gap(const Passage& passage, double gap, double low, double at_low, double high, double at_high) {
+  constexpr double kFinest = 0.01;  // m
+  if (std::min(at_low, at_high) < gap) return false;
+  const double change = passage.change(high - low);
+  if (0.5 * (at_low + at_high - change) >= gap || change < kFinest) return true;
+  const double middle = 0.5 * (low + high);
+  const double there = passage.distance(middle);
+  return keeps_gap(passage, gap, low, at_low, middle, there) && keeps_gap(passage, gap, middle, there, high, at_high);
 }
 
 /// The shortest time for a way, s.
@@ -192,8 +222,11 @@ bool is_free(const SpaceTimeProblem& problem, const SpaceTime& from, const Space
     for (const planner::base::Track& sphere : problem.spheres) {
       const Vec3 c = planner::geometry::predict_position(sphere, a.t, problem.acceleration_trust);
       const Vec3 d = planner::geometry::predict_position(sphere, b.t, problem.acceleration_trust);
-      if (planner::geometry::swept_distance_squared(a.position, b.position, c, d) < sphere.radius * sphere.radius)
-        return false;
+      if (planner::geometry::swept_distance_squared(a.position, b.position, c, d) >= sphere.radius * sphere.radius)
+        continue;
+      if (!sphere.body.solid) return false;
+      const Passage passage{a, b, c, d, sphere};
+      if (!keeps_gap(passage, body_gap(sphere), 0.0, passage.distance(0.0), 1.0, passage.distance(1.0))) return false;
     }
   }
   return true;

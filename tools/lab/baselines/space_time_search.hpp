@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RRT* (OMPL's) in space and time among moving spheres.
+// RRT* (OMPL's) in space and time among moving spheres and bodies.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct SpaceTime {
 };
 
 /// What to search: from `start` at time 0 to within `tolerance` of `goal`, at no more than `speed` and `climb`, without
-/// coming nearer to a sphere than its radius. Spheres are valid at time 0.
+/// coming nearer to a sphere than its radius, or to a body than body_gap(). Spheres are valid at time 0.
 struct SpaceTimeProblem {
   Vec3 start = Vec3::Zero();
   Vec3 goal = Vec3::Zero();
@@ -38,7 +38,7 @@ struct SpaceTimeSettings {
 };
 
 /// Whether the straight even motion between two places is possible: forward in time, within speed and climb, clear of
-/// all spheres. Continuous in time: in pieces of half a second, in which the spheres move evenly.
+/// all spheres and bodies. Continuous in time: in pieces of half a second, in which they move evenly.
 [[nodiscard]] bool is_free(const SpaceTimeProblem& problem, const SpaceTime& from, const SpaceTime& to);
 
 /// RRT* (Karaman and Frazzoli, Sampling-based algorithms for optimal motion planning, 2011) as OMPL 1.5 has it, over

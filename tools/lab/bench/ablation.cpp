@@ -98,6 +98,7 @@ Case case_at(const sim::world::World& world, double share, const planner::base::
 std::vector<Case> make_cases(int worlds, const planner::base::HorizonSettings& settings) {
   std::vector<Case> cases;
   for (const std::string_view family : sim::families::world_families()) {
+    if (sim::families::has_map(family)) continue;  // the search is asked about tracks
     for (int seed = 1; seed <= worlds; ++seed) {
       const sim::world::World world(sim::families::make_world(family, static_cast<std::uint64_t>(seed)));
       for (const double share : kPoints) {

@@ -128,7 +128,8 @@ void bench_warm(const Options& options) {
                percent(quantile(gaps.as_clear, 0.9))});
   };
   for (const std::string_view family : sim::families::world_families()) {
-    if (!sim::families::blocks_straight_line(family) || sim::families::make_world(family, 1).obstacles.empty())
+    if (!sim::families::blocks_straight_line(family) || sim::families::has_map(family) ||
+        sim::families::make_world(family, 1).obstacles.empty())
       continue;
     Gaps gaps;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) gaps.add(fly(family, seed, settings, pool));

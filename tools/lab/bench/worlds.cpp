@@ -78,8 +78,9 @@ void bench_worlds(const Options& options) {
   Table table({"family", "planned", "SLR", "time", "clearance", "flown", "collided", "SLR", "time", "clearance"});
   planner::base::WorkerPool pool(options.cores);
   for (const std::string_view family : sim::families::world_families()) {
-    // Those of the literature and the teams belong to the arena.
-    if (!sim::families::blocks_straight_line(family) || sim::families::make_world(family, 1).obstacles.empty())
+    // Those of the literature, the known places and the teams belong to the arena.
+    if (!sim::families::blocks_straight_line(family) || sim::families::has_map(family) ||
+        sim::families::make_world(family, 1).obstacles.empty())
       continue;
     const Tally planned = plan_family(family, options.seeds, pool);
     const Tally flown = fly_family(family, flights, options.cores);

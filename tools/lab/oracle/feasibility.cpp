@@ -49,6 +49,7 @@ OracleResult judge(const config::Scenario& scenario, const OracleOptions& option
     return judgement;
   }
   if (!flight) flight = find_flight(scenario, options, Effort::kWide);
+  if (!flight) flight = find_tight_flight(scenario, options);
   if (flight) {
     judgement.verdict = Verdict::kSolvable;
     judgement.flight = *std::move(flight);

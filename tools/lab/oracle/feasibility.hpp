@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An independent judge of worlds and of paths: whether a free flight exists, and how near a path comes to the true
 // obstacles. It knows the whole future. Nothing in it is planner code; of sim it takes the true positions (World) and
-// the distance to a hull of vertices, no more. Most worlds cost it hundredths of a second (jink_oracle_table measures
-// it); one that stays unknown, up to some seconds; moving hulls, tens of seconds.
+// the distance to what stands and to a hull of vertices, no more. Most worlds cost it hundredths of a second, those
+// with a map about one second (jink_oracle_table measures it); one that stays unknown, some seconds.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,8 @@ struct TimedPoint {
 };
 
 struct OracleOptions {
-  double margin = 0.4;              ///< m, that a flight must keep from every obstacle's surface
+  double margin = 0.4;              ///< m, that a flight must keep from every surface
+  double least_margin = 0.15;       ///< m, the same where there is no such flight, as through a door of 1.3 m
   double acceleration_share = 0.5;  ///< of the vehicle's limit that a flight may use
   double acceptance = 0.5;          ///< m, from the target, within which a world without a flight must not let it come
 };
@@ -49,25 +50,28 @@ struct OracleResult {
   std::vector<Flight> others;  ///< of the further vehicles, by number from 1; empty unless solvable
 };
 
-/// The three answers in one: a narrow search, then the proof that there is no flight, then a wide search. All are
-/// deterministic. Thread safe. A team (Scenario::vehicles) is solvable if find_flights() finds a flight for each, and
-/// impossible if one of them could not even get there alone.
+/// The answers in one: a narrow search, then the proof that there is no flight, then a wide search, then
+/// find_tight_flight(). All are deterministic. Thread safe. A team (Scenario::vehicles) is solvable if find_flights()
+/// finds a flight for each, and impossible if one of them could not even get there alone.
 [[nodiscard]] OracleResult judge(const config::Scenario& scenario, const OracleOptions& options = {});
 
-/// How hard a search tries.
-enum class Effort { kNarrow, kWide };
+/// How hard a search tries. A fine one is as wide as a wide one, in steps half as large.
+enum class Effort { kNarrow, kWide, kFine };
 
 /// A flight that keeps to the vehicle's speed, climb and share of acceleration, to the world (or, without one, 8 m
 /// around the mission and above the lowest of ground, start and target) and to the margin, and arrives within the time
 /// limit and four straight flights at full speed and half a minute; or nothing, which proves nothing. It is a chain of
-/// half seconds at constant acceleration between whole metres per second on each axis, found by a beam search over time
-/// with wide beams, and the last decimetres to the target. What it returns is checked by true_clearance(), not by the
-/// search, so it is right whatever the search does. Boxes and hulls count as their enclosing spheres while it searches.
-/// Further vehicles are not there.
+/// half seconds at constant acceleration between whole metres per second on each axis (a fine search: half metres per
+/// second), found by a beam search over time with wide beams, and the last decimetres to the target. Beams are led
+/// round what stands by the shortest ways on a grid of a quarter of a metre. Shapes count as they are. What it returns
+/// is checked by true_clearance(), not by the search, so it is right whatever the search does. Further vehicles are not
+/// there.
 [[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options,
                                                 Effort effort);
-/// The same, narrow first and then wide.
+/// The same, narrow first and then wide, then find_tight_flight().
 [[nodiscard]] std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options = {});
+/// A flight that keeps the least margin, searched for narrow and then fine; nothing where that is not the smaller one.
+[[nodiscard]] std::optional<Flight> find_tight_flight(const config::Scenario& scenario, const OracleOptions& options);
 
 /// A flight for each vehicle of the scenario, by number, that keeps the margin from the obstacles and from the flights
 /// of those before it, or nothing, which proves nothing.
@@ -78,15 +82,16 @@ enum class Effort { kNarrow, kWide };
 
 /// Whether no motion at all gets within `options.acceptance` of the target by the time limit that keeps to max_speed
 /// and max_climb and touches nothing. An over-approximation of what can be reached is followed in steps of 50 ms: all
-/// cells of a grid next to a reached one, less those that lie wholly where the vehicle overlaps an obstacle at that
-/// instant. A cell is as long as the vehicle flies in a step, so it cannot pass more than one. Where the scenario has
-/// no world, the vehicle may come in from everywhere, 8 m around the mission. Further vehicles are not there.
+/// cells of a grid next to a reached one, less those that lie wholly where the vehicle overlaps an obstacle or the map
+/// at that instant. A cell is as long as the vehicle flies in a step, so it cannot pass more than one. Where the
+/// scenario has no world, the vehicle may come in from everywhere, 8 m around the mission. Further vehicles are not
+/// there.
 [[nodiscard]] bool certainly_impossible(const config::Scenario& scenario, const OracleOptions& options = {});
 
-/// The smallest distance, in continuous time, from the vehicle's sphere to the true surface of any obstacle while it
-/// flies `path`, to 0.1 mm (never below the truth); infinite without obstacles or points. Negative: they overlap, or
-/// minus the vehicle's radius for a centre in a hull of vertices. Times must not decrease. Bisection with a bound on
-/// the speed of the approach: no contact is missed.
+/// The smallest distance, in continuous time, from the vehicle's sphere to the true surface of any obstacle or solid of
+/// the map while it flies `path`, to 0.1 mm (never below the truth); infinite without any of them or without points.
+/// Negative: they overlap, or minus the vehicle's radius for a centre in a hull of vertices. Times must not decrease.
+/// Bisection with a bound on the speed of the approach: no contact is missed.
 [[nodiscard]] double true_clearance(const config::Scenario& scenario, std::span<const TimedPoint> path);
 
 /// The largest speed and vertical speed on the pieces of `path`, m/s; infinite where it jumps.

@@ -8,6 +8,7 @@
 #include "sim/world/world.hpp"
 #include "tools/lab/oracle/cells.hpp"
 #include "tools/lab/oracle/feasibility.hpp"
+#include "tools/lab/oracle/standing.hpp"
 #include "tools/lab/oracle/surface_distance.hpp"
 
 namespace jink::tools::lab::oracle {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kReachStep = 0.05;  // s
 constexpr double kRoundUp = 1.001;   // by which a cell is longer than the way of a step
 
-/// What a box or a hull blocks while it stands.
+/// What an obstacle that is no sphere blocks while it stands.
 struct Blocked {
   bool known = false;
   Vec3 reference = Vec3::Zero();
@@ -27,14 +28,14 @@ struct Blocked {
 class Reachability {
  public:
   explicit Reachability(const config::Scenario& scenario)
-      : world_(scenario),
+      : world_(with_map_as_obstacles(scenario)),
         cell_(kReachStep * kRoundUp *
               Vec3(scenario.vehicle.max_speed, scenario.vehicle.max_speed, scenario.vehicle.max_climb)),
         open_(!scenario.world),
         box_(box_of(scenario)),
         count_(((box_.max - box_.min).array() / cell_.array()).floor().cast<int>() + 1),
         reached_(count_.x(), count_.y(), count_.z()),
-        blocked_(scenario.obstacles.size()) {}
+        blocked_(world_.scenario().obstacles.size()) {}
 
   /// Whether a cell within `acceptance` of the target is ever reached.
   bool reaches(double acceptance) {
@@ -102,8 +103,9 @@ class Reachability {
     if (blocked.known && blocked.reference == reference && blocked.axes == axes) return blocked.cells;
     blocked = {true, reference, axes, {}};
     const planner::geometry::Sphere ball = too_near(i, t);
-    const Vec3 reach = Vec3::Constant(ball.radius);
-    for_cells(ball.center - reach, ball.center + reach, [&](int x, int y, int z) {
+    const planner::base::Box around = box_around(obstacle.shape, axes);
+    const Vec3 reach = Vec3::Constant(world_.scenario().vehicle.radius);
+    for_cells(reference + around.min - reach, reference + around.max + reach, [&](int x, int y, int z) {
       const Vec3 low = low_corner(x, y, z);
       if (in_ball(low, ball) && in_shape(low - reference, obstacle.shape, axes)) blocked.cells.emplace_back(x, y, z);
     });

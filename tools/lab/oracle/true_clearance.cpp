@@ -7,6 +7,7 @@
 
 #include "sim/world/world.hpp"
 #include "tools/lab/oracle/feasibility.hpp"
+#include "tools/lab/oracle/standing.hpp"
 #include "tools/lab/oracle/surface_distance.hpp"
 
 namespace jink::tools::lab::oracle {
@@ -49,7 +50,12 @@ class Piece {
         length_((to.position - from.position).norm()) {}
 
   /// Lowers `nearest` to this piece's smallest distance between the vehicle's centre and the surface.
-  void lower(double& nearest) const { refine(0.0, distance_at(0.0), 1.0, distance_at(1.0), nearest); }
+  void lower(double& nearest) const {
+    const planner::geometry::Sphere around = world_.sphere(obstacle_, time_at(0.5));
+    const Vec3 middle = 0.5 * (from_.position + to_.position);
+    if ((middle - around.center).norm() - around.radius - 0.5 * change(0.0, 1.0) >= nearest) return;
+    refine(0.0, distance_at(0.0), 1.0, distance_at(1.0), nearest);
+  }
 
  private:
   [[nodiscard]] double distance_at(double u) const {
@@ -88,7 +94,10 @@ class Piece {
 }  // namespace
 
 double true_clearance(const config::Scenario& scenario, std::span<const TimedPoint> path) {
-  const sim::world::World world(scenario);
+  return true_clearance(sim::world::World(with_map_as_obstacles(scenario)), path);
+}
+
+double true_clearance(const sim::world::World& world, std::span<const TimedPoint> path) {
   double nearest = planner::base::kInfinity;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const TimedPoint& from = path[i];
@@ -97,7 +106,7 @@ double true_clearance(const config::Scenario& scenario, std::span<const TimedPoi
       Piece(world, obstacle, from, to).lower(nearest);
     }
   }
-  return nearest - scenario.vehicle.radius;
+  return nearest - world.scenario().vehicle.radius;
 }
 
 }  // namespace jink::tools::lab::oracle

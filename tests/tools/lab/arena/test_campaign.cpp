@@ -150,6 +150,33 @@ TEST(Campaign, MeasuresEveryPlan) {
   }
 }
 
+// With a map and shapes: flown, and what failed written and flown again from the file to the same bits.
+TEST(Campaign, FliesKnownPlacesInEachTier) {
+  const Folder folder;
+  CampaignSettings settings = small(1);
+  settings.families = {"truck", "sliding_gate"};
+  settings.pilots = {"straight", "stop_and_wait"};
+  settings.tiers = {"field", "perfect", "realistic"};
+  settings.oracle = false;
+  const Flown flown = fly_in(folder.path(), settings, 2);
+  ASSERT_TRUE(flown.complete);
+  ASSERT_EQ(flown.results.flights.size(), 12U);
+  for (const auto& [job, record] : flown.results.flights) {
+    SCOPED_TRACE(record.family + ", " + record.tier + ", " + record.pilot);
+    EXPECT_GT(record.plans, 0);
+    if (record.pilot == "straight" && record.tier == "perfect") {
+      EXPECT_EQ(record.outcome, "collision");
+    }
+    if (record.reached()) continue;
+    const Job job_of{record.job, {0, record.family, 0, record.seed}, record.tier, record.pilot};
+    const config::Scenario again =
+        config::load_scenario(failure_folder(folder.path(), job_of.name()) / "scenario.yaml");
+    EXPECT_FALSE(again.map.empty());
+    const Stop never = [] { return false; };
+    EXPECT_TRUE(same_result(fly(job_of, again, quick_planner(), never), record));
+  }
+}
+
 TEST(Campaign, JudgesOnlyWorldsInWhichNobodyArrived) {
   const Folder folder;
   CampaignSettings settings = small(kFew);

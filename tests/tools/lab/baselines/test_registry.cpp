@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "planner/base/solid.hpp"
 #include "sim/flight/closed_loop.hpp"
 #include "tests/tools/lab/baselines/baseline_testing.hpp"
 #include "tools/lab/baselines/baseline.hpp"
@@ -198,6 +199,57 @@ TEST(RrtPilot, FliesPastWhatStandsAndWhatComes) {
   const config::Scenario scenario = straight({sphere(0.5, {4, 0, 1.5}), sphere(0.4, {16, 0.1, 1.5}, {-1.5, 0, 0})});
   const sim::flight::ClosedLoopResult result = fly("rrt_star", scenario, settings());
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+}
+
+/// A wall across the way that is on the map, with a gap of 2.4 m about y = 1: the balls round its halves leave none.
+config::Scenario gap_in_a_wall() {
+  config::Scenario scenario = straight();
+  scenario.map = {{config::BoxShape{{0.3, 10, 12}}, config::LinearMotion{{6, -5.2, 5}}},
+                  {config::BoxShape{{0.3, 10, 12}}, config::LinearMotion{{6, 7.2, 5}}}};
+  scenario.world = planner::base::Box{{-3, -8, 0.3}, {15, 9, 4}};
+  return scenario;
+}
+
+TEST(StraightPilot, HitsWhatIsOnTheMap) {
+  config::Scenario scenario = gap_in_a_wall();
+  scenario.start.y() = scenario.target.y() = -1.0;
+  EXPECT_EQ(fly("straight", scenario, settings()).flight.outcome, bridge::supervisor::Outcome::kCollision);
+}
+
+TEST(WaitingPilot, WaitsInFrontOfWhatIsOnTheMap) {
+  config::Scenario scenario = gap_in_a_wall();
+  scenario.start.y() = scenario.target.y() = -1.0;
+  const sim::flight::ClosedLoopResult result = fly("stop_and_wait", scenario, settings());
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kTimeout);
+  EXPECT_GT(result.min_clearance, 0.2);
+}
+
+TEST(OrcaPilot, FliesThroughAGapOfTheMap) {
+  const sim::flight::ClosedLoopResult result = fly("orca", gap_in_a_wall(), settings());
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
+TEST(RrtPilot, FliesThroughAGapOfTheMap) {
+  const sim::flight::ClosedLoopResult result = fly("rrt_star", gap_in_a_wall(), settings());
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
+TEST(NearestPart, OfABodyIsOnItsSurfaceOrBehindWhoIsInIt) {
+  planner::base::Track slab;
+  slab.position = {5, 0, 0};
+  slab.velocity = {0, 1, 0};
+  slab.body = {planner::base::Solid::box({2, 20, 20}, {}), 0.0, 0.5};
+  slab.radius = slab.body.solid->reach() + 0.7;
+  const planner::base::Track part = nearest_part(slab, {1, 3, 2});
+  EXPECT_LT((part.position - Vec3(4, 3, 2)).norm(), 1e-6);
+  EXPECT_NEAR(part.radius, 0.7, 1e-12);
+  EXPECT_LT((part.velocity - Vec3(-1.5, 1 - 0.5, 0)).norm(), 1e-6);
+  EXPECT_EQ(part.body.solid, nullptr);
+  const planner::base::Track within = nearest_part(slab, {4.2, 3, 2});
+  EXPECT_GT(within.position.x(), 4.2);  // the way out is to smaller x
+  EXPECT_NEAR(within.position.y(), 3.0, 1e-6);
 }
 
 // The path is planned with more than the margin, since the flown motion cuts its corners.

@@ -72,7 +72,7 @@ void expect_sound(const config::Scenario& scenario, const Flight& flight, const 
   }
   EXPECT_LE(velocity.norm(), 0.2);  // it comes to rest
   EXPECT_GE(nearest, options.margin);
-  if (!scenario.obstacles.empty()) {
+  if (!scenario.obstacles.empty() || !scenario.map.empty()) {
     EXPECT_NEAR(nearest, flight.min_clearance, 2e-4);
   }
 }
@@ -106,15 +106,117 @@ TEST(Judge, WallWithAHoleIsSolvable) {
   expect_sound(scenario, judgement.flight);
 }
 
-// The hole leaves 0.39 m around the vehicle, which is too little for the margin, so nothing is promised either way.
-TEST(Judge, WallWithATightHoleIsUnknown) {
+/// As `options`, but for flights that keep the least margin alone.
+OracleOptions tight(OracleOptions options = {}) {
+  options.margin = options.least_margin;
+  return options;
+}
+
+// The hole leaves 0.39 m around the vehicle, which is too little for the margin: nothing is promised either way by who
+// asks for no less.
+TEST(Judge, WallWithATightHoleTakesTheLeastMargin) {
   const config::Scenario scenario = hall(wall(1.0));
-  EXPECT_EQ(judge(scenario).verdict, Verdict::kUnknown);
-  OracleOptions bold;
-  bold.margin = 0.0;
-  const OracleResult judgement = judge(scenario, bold);
+  OracleOptions strict;
+  strict.least_margin = strict.margin;
+  EXPECT_EQ(judge(scenario, strict).verdict, Verdict::kUnknown);
+  const OracleResult judgement = judge(scenario);
   ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
-  expect_sound(scenario, judgement.flight, bold);
+  expect_sound(scenario, judgement.flight, tight());
+}
+
+config::Obstacle box(const Vec3& center, const Vec3& edges) {
+  return {config::BoxShape{edges}, config::LinearMotion{center}};
+}
+
+/// Two solid walls across the hall at x, but for an opening of that width and height from the floor on.
+void add_wall(std::vector<config::Obstacle>& solids, double x, double y, double width, double height) {
+  const double low = y - 0.5 * width;
+  const double high = y + 0.5 * width;
+  solids.push_back(box({x, 0.5 * (low - 3.5), 2}, {0.2, low + 3.5, 4}));
+  solids.push_back(box({x, 0.5 * (high + 3.5), 2}, {0.2, 3.5 - high, 4}));
+  if (height < 4) solids.push_back(box({x, y, 0.5 * (4 + height)}, {0.2, width, 4 - height}));
+}
+
+// Of 1.3 m, which leaves 0.35 m on either side of the vehicle; the balls round the walls' halves would leave nothing.
+// The walls are in the map or among the obstacles.
+TEST(Judge, DoorsAreFlownThrough) {
+  std::vector<config::Obstacle> walls;
+  add_wall(walls, 5, -1.9, 1.3, 2.1);
+  add_wall(walls, 8, 2.1, 1.3, 2.1);
+  add_wall(walls, 11, -1.33, 1.3, 2.1);
+  config::Scenario scenario = hall(walls);
+  const OracleResult seen = judge(scenario);
+  ASSERT_EQ(seen.verdict, Verdict::kSolvable);
+  expect_sound(scenario, seen.flight, tight());
+  EXPECT_LT(seen.flight.min_clearance, 0.36);
+  std::swap(scenario.obstacles, scenario.map);
+  const OracleResult known = judge(scenario);
+  ASSERT_EQ(known.verdict, Verdict::kSolvable);
+  expect_sound(scenario, known.flight, tight());
+  EXPECT_EQ(known.flight.arrival_time, seen.flight.arrival_time);
+}
+
+TEST(Judge, AClosedRoomOfTheMapIsImpossible) {
+  config::Scenario scenario = hall({});
+  scenario.map = {box({8, 0, 2}, {0.2, 8, 4.5})};
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  scenario.map.clear();
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kSolvable);
+  // The target stands in a room without a door.
+  scenario.world.reset();
+  for (const double side : {-1.0, 1.0}) {
+    scenario.map.push_back(box({16 + 2 * side, 0, 2}, {0.2, 4.2, 5}));
+    scenario.map.push_back(box({16, 2 * side, 2}, {4.2, 0.2, 5}));
+    scenario.map.push_back(box({16, 0, 2 + 2.5 * side}, {4.2, 4.2, 0.2}));
+  }
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kImpossible);
+  scenario.map.front() = box({14, 1.4, 2}, {0.2, 1.4, 5});  // a part of the near wall is gone
+  EXPECT_EQ(judge(scenario).verdict, Verdict::kSolvable);
+}
+
+double length_of(const Flight& flight) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < flight.path.size(); ++i)
+    length += (flight.path[i].position - flight.path[i - 1].position).norm();
+  return length;
+}
+
+// A container along the way, 12 m long: past its side it is 1.3 m aside, round its ball 7.
+TEST(Judge, ALongBoxIsFlownRoundCloserThanItsBall) {
+  config::Scenario scenario = hall({box({8, 0.2, 2}, {12, 1.2, 4})});
+  scenario.world = planner::base::Box{{-1, -9, 0}, {18, 9, 4}};
+  const OracleResult as_it_is = judge(scenario);
+  ASSERT_EQ(as_it_is.verdict, Verdict::kSolvable);
+  expect_sound(scenario, as_it_is.flight);
+  EXPECT_LT(length_of(as_it_is.flight), 18.0);
+  const planner::geometry::Sphere around = sim::world::World(scenario).sphere(0, 0.0);
+  scenario.obstacles = {ball(around.radius, config::LinearMotion{around.center})};
+  const OracleResult as_ball = judge(scenario);
+  ASSERT_EQ(as_ball.verdict, Verdict::kSolvable);
+  EXPECT_LT(length_of(as_it_is.flight) + 3.0, length_of(as_ball.flight));
+}
+
+// Out of a bag: the straight distance leads to its bottom, from where no beam comes back.
+TEST(Judge, DeadEndsAreLeft) {
+  config::Scenario scenario = hall({});
+  scenario.world = planner::base::Box{{-6, -9, 0}, {24, 9, 4}};
+  scenario.map = {box({12, 0, 2}, {0.3, 12, 6}), box({5, 6, 2}, {14, 0.3, 6}), box({5, -6, 2}, {14, 0.3, 6})};
+  const OracleResult judgement = judge(scenario);
+  ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
+  expect_sound(scenario, judgement.flight);
+  EXPECT_GT(length_of(judgement.flight), 24.0);
+}
+
+// What turns and what leans, each as near as it is.
+TEST(Judge, ShapesThatTurnAreFlownPast) {
+  config::Obstacle plank = box({8, 0, 2}, {5.6, 0.2, 6});  // as long as the hall is wide
+  plank.yaw_rate = 0.6;
+  config::Obstacle mast{config::CylinderShape{0.2, 12}, config::LinearMotion{{12, 1, 2}}, {0.4, 0.6, 0}};
+  config::Obstacle pipe{config::CapsuleShape{0.1, {0, -4, 0}, {0, 4, 1}}, config::LinearMotion{{3.5, 0, 2.2}}};
+  const config::Scenario scenario = hall({plank, mast, pipe});
+  const OracleResult judgement = judge(scenario);
+  ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
+  expect_sound(scenario, judgement.flight, tight());
 }
 
 // It sweeps the hall to and fro without a gap; the vehicle can go with it but not past it.
@@ -180,7 +282,7 @@ TEST(Judge, FlightsThroughTheFamiliesAreSound) {
       SCOPED_TRACE(scenario.name);
       const OracleResult judgement = judge(scenario);
       ASSERT_EQ(judgement.verdict, Verdict::kSolvable);
-      expect_sound(scenario, judgement.flight);
+      expect_sound(scenario, judgement.flight, sim::families::has_map(family) ? tight() : OracleOptions{});
       ASSERT_EQ(judgement.others.size(), scenario.vehicles.size());
       for (std::size_t k = 0; k < judgement.others.size(); ++k)
         expect_sound(alone(scenario, k + 1), judgement.others[k]);
@@ -242,6 +344,11 @@ TEST(TrueClearance, OfCasesWorkedByHand) {
   scenario.obstacles = {{config::BoxShape{{2, 2, 2}}, config::LinearMotion{{4, 4, 0}}}};
   EXPECT_NEAR(true_clearance(scenario, std::vector<TimedPoint>{{0, {0, 0, 0}}}), std::hypot(3, 3) - 0.3, 1e-12);
   EXPECT_NEAR(true_clearance(scenario, std::vector<TimedPoint>{{0, {4, 4.5, 0}}}), -0.5 - 0.3, 1e-12);
+  // The map counts as well.
+  std::swap(scenario.obstacles, scenario.map);
+  EXPECT_NEAR(true_clearance(scenario, std::vector<TimedPoint>{{0, {4, 4.5, 0}}}), -0.5 - 0.3, 1e-12);
+  scenario.obstacles = {ball(0.5, config::LinearMotion{{0, 1, 0}})};
+  EXPECT_NEAR(true_clearance(scenario, std::vector<TimedPoint>{{0, {0, 0, 0}}}), 0.5 - 0.3, 1e-12);
 }
 
 TEST(TrueClearance, WithoutObstaclesOrPathIsInfinite) {
