@@ -128,14 +128,15 @@ struct Beam {
 
 class Search {
  public:
-  Search(const config::Scenario& scenario, const OracleOptions& options, const Beam& beam)
+  /// Led to the target by the `ways` round what stands, or straight.
+  Search(const config::Scenario& scenario, const OracleOptions& options, const Beam& beam, bool ways)
       : world_(with_standing_as_map(scenario, true)),
         judged_(with_map_as_obstacles(scenario)),
         options_(options),
         beam_(beam),
         box_(box_of(scenario)),
         gap_(scenario.vehicle.radius + options.margin + beam.slack),
-        standing_(scenario, box_, gap_) {
+        standing_(scenario, box_, gap_, ways) {
     const double most_change = options.acceleration_share * scenario.vehicle.max_acceleration * kStep;
     const double change = (std::min(beam.change, most_change) + 1e-9) / beam.unit;
     const int most = static_cast<int>(change);
@@ -149,10 +150,10 @@ class Search {
   }
 
   std::optional<Flight> run() {
-    if (!standing_.has_way()) return std::nullopt;
     const config::Scenario& scenario = world_.scenario();
     double straight = (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed;
-    if (!standing_.empty()) straight = std::max(straight, standing_.time_to_go(scenario.start));
+    if (standing_.has_ways()) straight = std::max(straight, standing_.time_to_go(scenario.start));
+    if (straight == planner::base::kInfinity) return std::nullopt;
     const int steps = static_cast<int>(std::min(scenario.time_limit, kLongest * straight + kPatience) / kStep);
     layers_.push_back({State{Index::Zero(), Index::Zero(), -1, 0.0}});
     for (int step = 0; step <= steps && !layers_.back().empty(); ++step) {
@@ -268,7 +269,7 @@ class Search {
 
   [[nodiscard]] double guess(const State& state) const {
     const double straight = guess_straight(state);
-    return standing_.empty() ? straight : std::max(straight, guess_round(state));
+    return standing_.has_ways() ? std::max(straight, guess_round(state)) : straight;
   }
 
   /// Round what stands: along the way there, which bends, so that speed across it is lost.
@@ -398,9 +399,13 @@ class Search {
 std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options, Effort effort) {
   constexpr Beam kNarrow{500, 3, 0.02, 1.0, 2.0, false};
   constexpr Beam kWide{3000, 6, 0.06, 1.0, 2.0, false};
-  constexpr Beam kFine{3000, 4, 0.02, 0.5, 1.0, true};
+  constexpr Beam kFine{1200, 3, 0.02, 0.5, 1.0, true};
   const Beam& beam = effort == Effort::kNarrow ? kNarrow : effort == Effort::kWide ? kWide : kFine;
-  return Search(scenario, options, beam).run();
+  // Where no map says so, a straight way may do, and is found sooner.
+  std::optional<Flight> flight;
+  if (scenario.map.empty()) flight = Search(scenario, options, beam, false).run();
+  if (flight || (scenario.map.empty() && with_standing_as_map(scenario, false).map.empty())) return flight;
+  return Search(scenario, options, beam, true).run();
 }
 
 std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSpacing = 0.25;     // m, between nodes
 constexpr double kMostNodes = 1.5e6;  // more are spaced wider
-constexpr double kFurther = 4.0;      // s, that nodes are looked at beyond the start
+constexpr double kFurther = 8.0;      // s, by which a way may be longer than the best
 constexpr double kShortest = 0.01;    // m, pieces that are cut no more
 
 bool stands(const config::Obstacle& obstacle, double time_limit) {
@@ -51,7 +51,7 @@ config::Scenario with_standing_as_map(const config::Scenario& scenario, bool wit
   return result;
 }
 
-Standing::Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off)
+Standing::Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off, bool ways)
     : world_(with_standing_as_map(scenario, false)),
       keep_off_(keep_off),
       max_speed_(scenario.vehicle.max_speed),
@@ -64,6 +64,7 @@ Standing::Standing(const config::Scenario& scenario, const planner::base::Box& b
   if (empty()) return;
   const auto nodes = static_cast<std::size_t>(count_.prod());
   distances_.assign(nodes, -1.0);
+  if (!ways) return;
   times_.assign(nodes, planner::base::kInfinity);
   next_.assign(nodes, -1);
   find_ways();
@@ -84,17 +85,19 @@ double Standing::distance(const Index& node) {
   return known;
 }
 
-// Dijkstra's, from the nodes about the target on, until the start is passed by a while.
+// A*, from the nodes about the target to the start, and on while ways from there to the start are not much longer: what
+// is left out is not worth a visit.
 void Standing::find_ways() {
   using Open = std::pair<double, std::int32_t>;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  const auto over = [&](const Index& node) { return times_[number(node)] + duration(place_of(node) - start_); };
   const auto reach = [&](const Index& node, double time, std::size_t next) {
     if (!contains(node)) return;
     const std::size_t at = number(node);
     if (time >= times_[at] || distance(node) < keep_off_) return;
     times_[at] = time;
     next_[at] = static_cast<std::int32_t>(next);
-    open.emplace(time, static_cast<std::int32_t>(at));
+    open.emplace(over(node), static_cast<std::int32_t>(at));
   };
   const auto for_neighbours = [](const auto& visit) {
     for (int z = -1; z <= 1; ++z) {
@@ -109,17 +112,17 @@ void Standing::find_ways() {
     if (contains(node)) reach(node, duration(target_ - place_of(node)), number(node));
   });
   double until = planner::base::kInfinity;
-  const std::size_t begin = contains(nearest(start_)) ? number(nearest(start_)) : times_.size();
   while (!open.empty()) {
-    const double time = open.top().first;
+    const double whole = open.top().first;
     const auto here = static_cast<std::size_t>(open.top().second);
     open.pop();
-    if (time > times_[here]) continue;
-    if (here == begin) until = time + kFurther;
-    if (time > until) break;
     const Index node = node_of(here);
-    for_neighbours(
-        [&](const Index& step) { reach(node + step, time + duration(spacing_ * step.cast<double>().matrix()), here); });
+    if (whole > over(node)) continue;
+    if ((node == nearest(start_)).all()) until = whole + kFurther;
+    if (whole > until) break;
+    for_neighbours([&](const Index& step) {
+      reach(node + step, times_[here] + duration(spacing_ * step.cast<double>().matrix()), here);
+    });
   }
 }
 
