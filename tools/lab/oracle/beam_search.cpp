@@ -3,8 +3,9 @@
 //
 // A state is a place on a grid of a quarter of a metre and a velocity of whole metres per second on each axis, at a
 // multiple of half a second. From one to the next the acceleration is constant, so places stay on the grid:
-// (v0 + v1) / 2 · 0.5 s is a multiple of 0.25 m, and no axis turns round on the way. A place is even or odd with its
-// velocity, so states at rest are half a metre apart. A fine search has half of all that: 1/8 m, 0.5 m/s, 1/4 m.
+// (v0 + v1) / 2 · 0.5 s is a multiple of 0.25 m, and changes by one turn no axis round on the way. A place
+// is even or odd with its velocity, so states at rest are half a metre apart. A fine search has half of all that: 1/8
+// m, 0.5 m/s, 1/4 m.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +30,6 @@ constexpr double kStep = 0.5;         // s
 constexpr int kSamples = 8;           // pieces of a step for which obstacles are taken to move straight
 constexpr double kLastLeg = 1.0;      // s, from rest at the last state to rest at the target
 constexpr double kLastLength = 0.44;  // m, at most, of that leg: sqrt(3) / 2 · 0.5 m and a little
-constexpr double kCoarse = 1.0;       // m, cells for which few states are kept, so that a beam does not bunch
 constexpr double kLongest = 4.0;      // straight flights at full speed, that a flight may take
 constexpr double kPatience = 30.0;    // s, besides
 constexpr double kPieceEnd = 0.02;    // m, pieces of relative motion that are cut no more
@@ -117,7 +117,8 @@ double time_to_rest(double distance, double v, double acceleration, double limit
 /// What an Effort means.
 struct Beam {
   std::size_t width;  ///< states that are kept of each step
-  int per_cell;       ///< of them in one coarse cell
+  int per_cell;       ///< of them in one coarse cell, so that a beam does not bunch
+  double cell;        ///< m, its edge
   double slack;       ///< m, added to the margin for what the obstacles do between samples
   double unit;        ///< m/s, of velocities
   double change;      ///< m/s, the most in a step: more adds states that lead nowhere else
@@ -128,15 +129,14 @@ struct Beam {
 
 class Search {
  public:
-  /// Led to the target by the `ways` round what stands, or straight.
-  Search(const config::Scenario& scenario, const OracleOptions& options, const Beam& beam, bool ways)
+  Search(const config::Scenario& scenario, const OracleOptions& options, const Beam& beam)
       : world_(with_standing_as_map(scenario, true)),
         judged_(with_map_as_obstacles(scenario)),
         options_(options),
         beam_(beam),
         box_(box_of(scenario)),
         gap_(scenario.vehicle.radius + options.margin + beam.slack),
-        standing_(scenario, box_, gap_, ways) {
+        standing_(scenario, box_, gap_) {
     const double most_change = options.acceleration_share * scenario.vehicle.max_acceleration * kStep;
     const double change = (std::min(beam.change, most_change) + 1e-9) / beam.unit;
     const int most = static_cast<int>(change);
@@ -152,7 +152,7 @@ class Search {
   std::optional<Flight> run() {
     const config::Scenario& scenario = world_.scenario();
     double straight = (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed;
-    if (standing_.has_ways()) straight = std::max(straight, standing_.time_to_go(scenario.start));
+    if (!standing_.empty()) straight = std::max(straight, standing_.time_to_go(scenario.start));
     if (straight == planner::base::kInfinity) return std::nullopt;
     const int steps = static_cast<int>(std::min(scenario.time_limit, kLongest * straight + kPatience) / kStep);
     layers_.push_back({State{Index::Zero(), Index::Zero(), -1, 0.0}});
@@ -241,8 +241,9 @@ class Search {
     return way;
   }
 
-  /// Of what stands and of what might be touched.
+  /// In the world, clear of what stands and of what might be touched.
   [[nodiscard]] bool is_free(const Way& way) {
+    if (!std::all_of(way.begin(), way.end(), [&](const Vec3& place) { return box_.contains(place); })) return false;
     if (near_standing_) {
       for (std::size_t i = 0; i < kSamples; ++i)
         if (!standing_.clear(way[i], way[i + 1])) return false;
@@ -259,7 +260,8 @@ class Search {
       for (const Index& change : changes_) {
         State to{from.place + 2 * from.velocity + change, from.velocity + change, static_cast<int>(i), 0.0};
         if (!within_limits(to) || !box_.contains(position(to)) || next.contains(to)) continue;
-        if ((near_standing_ || !near_.empty()) && !is_free(way_of(from, change))) continue;
+        const bool turns_round = (from.velocity * to.velocity < 0).any();
+        if ((turns_round || near_standing_ || !near_.empty()) && !is_free(way_of(from, change))) continue;
         to.to_go = guess(to);
         next.insert(to);
       }
@@ -269,7 +271,7 @@ class Search {
 
   [[nodiscard]] double guess(const State& state) const {
     const double straight = guess_straight(state);
-    return standing_.has_ways() ? std::max(straight, guess_round(state)) : straight;
+    return standing_.empty() ? straight : std::max(straight, guess_round(state));
   }
 
   /// Round what stands: along the way there, which bends, so that speed across it is lost.
@@ -318,7 +320,7 @@ class Search {
     for (const State& state : states) {
       std::uint64_t cell = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        const double place = std::floor(state.place[axis] * beam_.grid() / kCoarse);
+        const double place = std::floor(state.place[axis] * beam_.grid() / beam_.cell);
         cell = cell << 16U | static_cast<std::uint16_t>(static_cast<int>(place));
         if (!beam_.by_velocity) continue;
         const auto fast = static_cast<int>(std::floor(0.5 * velocity(state)[axis] + 0.5));
@@ -397,15 +399,11 @@ class Search {
 }  // namespace
 
 std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options, Effort effort) {
-  constexpr Beam kNarrow{500, 3, 0.02, 1.0, 2.0, false};
-  constexpr Beam kWide{3000, 6, 0.06, 1.0, 2.0, false};
-  constexpr Beam kFine{1200, 3, 0.02, 0.5, 1.0, true};
+  constexpr Beam kNarrow{500, 3, 1.0, 0.02, 1.0, 2.0, false};
+  constexpr Beam kWide{3000, 6, 1.0, 0.06, 1.0, 2.0, false};
+  constexpr Beam kFine{2000, 3, 0.5, 0.02, 0.5, 1.0, true};
   const Beam& beam = effort == Effort::kNarrow ? kNarrow : effort == Effort::kWide ? kWide : kFine;
-  // Where no map says so, a straight way may do, and is found sooner.
-  std::optional<Flight> flight;
-  if (scenario.map.empty()) flight = Search(scenario, options, beam, false).run();
-  if (flight || (scenario.map.empty() && with_standing_as_map(scenario, false).map.empty())) return flight;
-  return Search(scenario, options, beam, true).run();
+  return Search(scenario, options, beam).run();
 }
 
 std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options) {

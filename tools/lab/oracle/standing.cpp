@@ -11,10 +11,10 @@
 namespace jink::tools::lab::oracle {
 namespace {
 
-constexpr double kSpacing = 0.25;     // m, between nodes
-constexpr double kMostNodes = 1.5e6;  // more are spaced wider
-constexpr double kFurther = 8.0;      // s, by which a way may be longer than the best
-constexpr double kShortest = 0.01;    // m, pieces that are cut no more
+constexpr double kSpacing = 0.25;   // m, between nodes
+constexpr double kMostNodes = 7e5;  // more are spaced wider
+constexpr double kFurther = 8.0;    // s, by which a way may be longer than the best
+constexpr double kShortest = 0.01;  // m, pieces that are cut no more
 
 bool stands(const config::Obstacle& obstacle, double time_limit) {
   return obstacle.yaw_rate == 0.0 && sim::world::speed_bound(obstacle.motion, 0.0, time_limit) == 0.0;
@@ -51,7 +51,7 @@ config::Scenario with_standing_as_map(const config::Scenario& scenario, bool wit
   return result;
 }
 
-Standing::Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off, bool ways)
+Standing::Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off)
     : world_(with_standing_as_map(scenario, false)),
       keep_off_(keep_off),
       max_speed_(scenario.vehicle.max_speed),
@@ -64,7 +64,6 @@ Standing::Standing(const config::Scenario& scenario, const planner::base::Box& b
   if (empty()) return;
   const auto nodes = static_cast<std::size_t>(count_.prod());
   distances_.assign(nodes, -1.0);
-  if (!ways) return;
   times_.assign(nodes, planner::base::kInfinity);
   next_.assign(nodes, -1);
   find_ways();

@@ -26,18 +26,17 @@ namespace jink::tools::lab::oracle {
 /// Distances are worked out where they are asked for first, so one serves one thread.
 class Standing {
  public:
-  /// In `box`, for a vehicle whose centre keeps off `keep_off`, m, from what stands. O(box) where something stands and
-  /// `ways` are asked for.
-  Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off, bool ways);
+  /// In `box`, for a vehicle whose centre keeps off `keep_off`, m, from what stands. O(box) where something stands.
+  Standing(const config::Scenario& scenario, const planner::base::Box& box, double keep_off);
 
   /// Nothing stands there.
   [[nodiscard]] bool empty() const { return world_.map()->tracks().empty(); }
-  /// Whether it knows ways: the two below are for that alone.
-  [[nodiscard]] bool has_ways() const { return !times_.empty(); }
   /// Not nearer than keep_off all the way from one place to the other.
   [[nodiscard]] bool clear(const Vec3& from, const Vec3& to);
   /// At least so far from what stands, m; at most 0.22 m less than the truth.
   [[nodiscard]] double least_distance(const Vec3& place);
+
+  // Where something stands:
 
   /// How long a vehicle that neither speeds up nor brakes is under way from there to the target, s; infinite where the
   /// lattice has no way.
