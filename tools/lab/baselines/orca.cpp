@@ -43,6 +43,27 @@ std::vector<HalfSpace> limits(const planner::horizon::PathRequest& request, doub
   return result;
 }
 
+/// Spheres as they are; of a body the part that is nearest now, and those that would be nearest or entered at the
+/// present velocities up to `time`: each is a sphere within what is to be kept clear of.
+std::vector<planner::base::Track> in_parts(const std::vector<planner::base::Track>& obstacles,
+                                           const planner::horizon::PathRequest& request, double time) {
+  constexpr int kLooks = 4;
+  std::vector<planner::base::Track> parts;
+  for (const planner::base::Track& obstacle : obstacles) {
+    if (!obstacle.body.solid) {
+      parts.push_back(obstacle);
+      continue;
+    }
+    for (int look = 0; look < kLooks; ++look) {
+      const double t = time * look / (kLooks - 1);
+      const Vec3 place = request.position + t * (request.velocity - obstacle.velocity);
+      parts.push_back(nearest_part(obstacle, place));
+      if (look > 0 && body_distance(obstacle, obstacle.position, 0.0, place) < 0.0) parts.back().position = place;
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 HalfSpace orca_half_space(const Vec3& offset, double radius, const Vec3& velocity, const Vec3& other, double time,
@@ -79,8 +100,8 @@ planner::verify::Plan OrcaPilot::plan(const bridge::companion::PlanJob& job) {
 
   std::vector<HalfSpace> half_spaces;
   bool urgent = false;
-  for (const planner::base::Track& obstacle : inflated_obstacles(request, settings_)) {
-    const planner::base::Track sphere = obstacle.body.solid ? nearest_part(obstacle, request.position) : obstacle;
+  for (const planner::base::Track& sphere :
+       in_parts(inflated_obstacles(request, settings_), request, orca_.time_horizon)) {
     const Vec3 offset = sphere.position - request.position;
     const double closing = request.vehicle.max_speed + sphere.velocity.norm();
     if (offset.norm() - sphere.radius > closing * orca_.time_horizon) continue;

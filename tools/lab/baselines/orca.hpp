@@ -27,7 +27,7 @@ struct OrcaSettings {
 /// braked. Where there is none it takes the one that violates those of the obstacles the least (section 5.3 of the
 /// paper). Where that would nearly be a stop, it wishes for a velocity a tenth to the right of unobstructed flight's:
 /// that breaks the symmetry in which ORCA only slows down. Obstacles keep the velocity of their tracks; of a body the
-/// nearest point counts. The path flies
+/// points count that are nearest now and, at the present velocities, later. The path flies
 /// that velocity for the time horizon and stops, or, where nothing is in the way, flies to the target; accelerations
 /// are bounded, and where a half-space is violated now more of the acceleration is used, as jink does in an emergency.
 class OrcaPilot final : public Baseline {

@@ -3,8 +3,9 @@
 //
 // A state is a place on a grid of a quarter of a metre and a velocity of whole metres per second on each axis, at a
 // multiple of half a second. From one to the next the acceleration is constant, so places stay on the grid:
-// (v0 + v1) / 2 · 0.5 s is a multiple of 0.25 m, and no axis turns round on the way. A place is even or odd with its
-// velocity, so states at rest are half a metre apart. A fine search has half of all that: 1/8 m, 0.5 m/s, 1/4 m.
+// (v0 + v1) / 2 · 0.5 s is a multiple of 0.25 m, and changes by one turn no axis round on the way. A place
+// is even or odd with its velocity, so states at rest are half a metre apart. A fine search has half of all that: 1/8
+// m, 0.5 m/s, 1/4 m.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +30,6 @@ constexpr double kStep = 0.5;         // s
 constexpr int kSamples = 8;           // pieces of a step for which obstacles are taken to move straight
 constexpr double kLastLeg = 1.0;      // s, from rest at the last state to rest at the target
 constexpr double kLastLength = 0.44;  // m, at most, of that leg: sqrt(3) / 2 · 0.5 m and a little
-constexpr double kCoarse = 1.0;       // m, cells for which few states are kept, so that a beam does not bunch
 constexpr double kLongest = 4.0;      // straight flights at full speed, that a flight may take
 constexpr double kPatience = 30.0;    // s, besides
 constexpr double kPieceEnd = 0.02;    // m, pieces of relative motion that are cut no more
@@ -117,7 +117,8 @@ double time_to_rest(double distance, double v, double acceleration, double limit
 /// What an Effort means.
 struct Beam {
   std::size_t width;  ///< states that are kept of each step
-  int per_cell;       ///< of them in one coarse cell
+  int per_cell;       ///< of them in one coarse cell, so that a beam does not bunch
+  double cell;        ///< m, its edge
   double slack;       ///< m, added to the margin for what the obstacles do between samples
   double unit;        ///< m/s, of velocities
   double change;      ///< m/s, the most in a step: more adds states that lead nowhere else
@@ -149,10 +150,10 @@ class Search {
   }
 
   std::optional<Flight> run() {
-    if (!standing_.has_way()) return std::nullopt;
     const config::Scenario& scenario = world_.scenario();
     double straight = (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed;
     if (!standing_.empty()) straight = std::max(straight, standing_.time_to_go(scenario.start));
+    if (straight == planner::base::kInfinity) return std::nullopt;
     const int steps = static_cast<int>(std::min(scenario.time_limit, kLongest * straight + kPatience) / kStep);
     layers_.push_back({State{Index::Zero(), Index::Zero(), -1, 0.0}});
     for (int step = 0; step <= steps && !layers_.back().empty(); ++step) {
@@ -240,8 +241,9 @@ class Search {
     return way;
   }
 
-  /// Of what stands and of what might be touched.
+  /// In the world, clear of what stands and of what might be touched.
   [[nodiscard]] bool is_free(const Way& way) {
+    if (!std::all_of(way.begin(), way.end(), [&](const Vec3& place) { return box_.contains(place); })) return false;
     if (near_standing_) {
       for (std::size_t i = 0; i < kSamples; ++i)
         if (!standing_.clear(way[i], way[i + 1])) return false;
@@ -258,7 +260,8 @@ class Search {
       for (const Index& change : changes_) {
         State to{from.place + 2 * from.velocity + change, from.velocity + change, static_cast<int>(i), 0.0};
         if (!within_limits(to) || !box_.contains(position(to)) || next.contains(to)) continue;
-        if ((near_standing_ || !near_.empty()) && !is_free(way_of(from, change))) continue;
+        const bool turns_round = (from.velocity * to.velocity < 0).any();
+        if ((turns_round || near_standing_ || !near_.empty()) && !is_free(way_of(from, change))) continue;
         to.to_go = guess(to);
         next.insert(to);
       }
@@ -317,7 +320,7 @@ class Search {
     for (const State& state : states) {
       std::uint64_t cell = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        const double place = std::floor(state.place[axis] * beam_.grid() / kCoarse);
+        const double place = std::floor(state.place[axis] * beam_.grid() / beam_.cell);
         cell = cell << 16U | static_cast<std::uint16_t>(static_cast<int>(place));
         if (!beam_.by_velocity) continue;
         const auto fast = static_cast<int>(std::floor(0.5 * velocity(state)[axis] + 0.5));
@@ -396,9 +399,9 @@ class Search {
 }  // namespace
 
 std::optional<Flight> find_flight(const config::Scenario& scenario, const OracleOptions& options, Effort effort) {
-  constexpr Beam kNarrow{500, 3, 0.02, 1.0, 2.0, false};
-  constexpr Beam kWide{3000, 6, 0.06, 1.0, 2.0, false};
-  constexpr Beam kFine{3000, 4, 0.02, 0.5, 1.0, true};
+  constexpr Beam kNarrow{500, 3, 1.0, 0.02, 1.0, 2.0, false};
+  constexpr Beam kWide{3000, 6, 1.0, 0.06, 1.0, 2.0, false};
+  constexpr Beam kFine{2000, 3, 0.5, 0.02, 0.5, 1.0, true};
   const Beam& beam = effort == Effort::kNarrow ? kNarrow : effort == Effort::kWide ? kWide : kFine;
   return Search(scenario, options, beam).run();
 }

@@ -11,10 +11,10 @@
 namespace jink::tools::lab::oracle {
 namespace {
 
-constexpr double kSpacing = 0.25;     // m, between nodes
-constexpr double kMostNodes = 1.5e6;  // more are spaced wider
-constexpr double kFurther = 4.0;      // s, that nodes are looked at beyond the start
-constexpr double kShortest = 0.01;    // m, pieces that are cut no more
+constexpr double kSpacing = 0.25;   // m, between nodes
+constexpr double kMostNodes = 7e5;  // more are spaced wider
+constexpr double kFurther = 8.0;    // s, by which a way may be longer than the best
+constexpr double kShortest = 0.01;  // m, pieces that are cut no more
 
 bool stands(const config::Obstacle& obstacle, double time_limit) {
   return obstacle.yaw_rate == 0.0 && sim::world::speed_bound(obstacle.motion, 0.0, time_limit) == 0.0;
@@ -84,17 +84,19 @@ double Standing::distance(const Index& node) {
   return known;
 }
 
-// Dijkstra's, from the nodes about the target on, until the start is passed by a while.
+// A*, from the nodes about the target to the start, and on while ways from there to the start are not much longer: what
+// is left out is not worth a visit.
 void Standing::find_ways() {
   using Open = std::pair<double, std::int32_t>;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  const auto over = [&](const Index& node) { return times_[number(node)] + duration(place_of(node) - start_); };
   const auto reach = [&](const Index& node, double time, std::size_t next) {
     if (!contains(node)) return;
     const std::size_t at = number(node);
     if (time >= times_[at] || distance(node) < keep_off_) return;
     times_[at] = time;
     next_[at] = static_cast<std::int32_t>(next);
-    open.emplace(time, static_cast<std::int32_t>(at));
+    open.emplace(over(node), static_cast<std::int32_t>(at));
   };
   const auto for_neighbours = [](const auto& visit) {
     for (int z = -1; z <= 1; ++z) {
@@ -109,17 +111,17 @@ void Standing::find_ways() {
     if (contains(node)) reach(node, duration(target_ - place_of(node)), number(node));
   });
   double until = planner::base::kInfinity;
-  const std::size_t begin = contains(nearest(start_)) ? number(nearest(start_)) : times_.size();
   while (!open.empty()) {
-    const double time = open.top().first;
+    const double whole = open.top().first;
     const auto here = static_cast<std::size_t>(open.top().second);
     open.pop();
-    if (time > times_[here]) continue;
-    if (here == begin) until = time + kFurther;
-    if (time > until) break;
     const Index node = node_of(here);
-    for_neighbours(
-        [&](const Index& step) { reach(node + step, time + duration(spacing_ * step.cast<double>().matrix()), here); });
+    if (whole > over(node)) continue;
+    if ((node == nearest(start_)).all()) until = whole + kFurther;
+    if (whole > until) break;
+    for_neighbours([&](const Index& step) {
+      reach(node + step, times_[here] + duration(spacing_ * step.cast<double>().matrix()), here);
+    });
   }
 }
 

@@ -31,12 +31,12 @@ class Standing {
 
   /// Nothing stands there.
   [[nodiscard]] bool empty() const { return world_.map()->tracks().empty(); }
-  /// Whether the lattice has a way from the start to the target.
-  [[nodiscard]] bool has_way() const { return empty() || time_to_go(start_) < planner::base::kInfinity; }
   /// Not nearer than keep_off all the way from one place to the other.
   [[nodiscard]] bool clear(const Vec3& from, const Vec3& to);
   /// At least so far from what stands, m; at most 0.22 m less than the truth.
   [[nodiscard]] double least_distance(const Vec3& place);
+
+  // Where something stands:
 
   /// How long a vehicle that neither speeds up nor brakes is under way from there to the target, s; infinite where the
   /// lattice has no way.

@@ -230,6 +230,14 @@ TEST(OrcaPilot, FliesThroughAGapOfTheMap) {
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
+// 8 m long: its nearest corner alone is passed by, its side is not.
+TEST(OrcaPilot, SeesATruckFromItsFrontToItsRear) {
+  const config::Obstacle truck{config::BoxShape{{2.5, 8, 3}}, config::LinearMotion{{6, -9, 1.5}, {0, 3, 0}}};
+  const sim::flight::ClosedLoopResult result = fly("orca", straight({truck}), settings());
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
 TEST(RrtPilot, FliesThroughAGapOfTheMap) {
   const sim::flight::ClosedLoopResult result = fly("rrt_star", gap_in_a_wall(), settings());
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
