@@ -6,13 +6,17 @@
 #include <chrono>
 #include <utility>
 
+#include "planner/horizon/path_check.hpp"
+
 namespace jink::bridge::companion {
 namespace {
 
 // What climbs and what stops has nowhere to go.
-void lead(planner::horizon::Guide& guide, PlanJob& job) {
-  if (job.goal == Goal::Kind::kWaypoint)
-    guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
+void lead(planner::horizon::Guide& guide, PlanJob& job,
+          std::shared_ptr<const planner::geometry::StaticMap>& guided_by) {
+  if (job.goal != Goal::Kind::kWaypoint) return;
+  guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
+  if (planner::horizon::is_valid(job.request)) guided_by = job.map.map;
 }
 
 }  // namespace
@@ -80,7 +84,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     try {
       const double begun = clock_.now();
       const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
-      lead(guide_, result.job);
+      lead(guide_, result.job, guided_by_);
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::base::Budget budget{
           settings_.horizon.generations,
@@ -111,7 +115,7 @@ void VirtualPlanner::start(PlanJob job) {
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
   const prediction::Obstacles obstacles = set_obstacles(result.job, settings_.horizon);
-  lead(guide_, result.job);
+  lead(guide_, result.job, guided_by_);
   const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
