@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -87,7 +87,7 @@ TEST(DecodeCloud, ReadsAnyLayout) {
       message.data.assign(2 * 31 + 27, 0);
       for (std::size_t row = 0; row < 3; ++row) {
         const auto put = [&](std::size_t offset, float value) {
-          doubles ? message.put(row * 31 + offset, double{value}) : message.put(row * 31 + offset, value);
+          doubles ? message.put(row * 31 + offset, static_cast<double>(value)) : message.put(row * 31 + offset, value);
         };
         put(1, kPoints[row].z());
         put(9, kPoints[row].x());
