@@ -218,6 +218,27 @@ Endings read_endings(const Value& value) {
   return endings;
 }
 
+CloudPolicy read_cloud(const Value& value) {
+  static constexpr std::array<std::string_view, 2> kUnknown = {"free", "occupied"};
+  const Map map(value, {"frame", "mount", "range", "unknown", "timeout_s", "forget_s", "all_round"});
+  CloudPolicy cloud;
+  if (const auto frame = map.find("frame")) cloud.frame = frame->text();
+  if (cloud.frame == "map" || cloud.frame == "ned")
+    map.at("frame", "").fail("is known without; expected the frame of a sensor on the vehicle");
+  if (const auto mount = map.find("mount")) {
+    const Map keys(*mount, {"position", "orientation"});
+    cloud.position = keys.vec3_or("position", within(10), cloud.position);
+    cloud.orientation = keys.vec3_or("orientation", within(10), cloud.orientation);
+  }
+  cloud.range = map.number_or("range", closed(2, 25), cloud.range);
+  if (const auto unknown = map.find("unknown"); unknown && unknown->choice(kUnknown) != 0)
+    unknown->fail("cannot be flown yet: what was not seen counts as free; expected free");
+  cloud.timeout_s = map.number_or("timeout_s", above(0, 60), cloud.timeout_s);
+  cloud.forget_s = map.number_or("forget_s", closed(1, 3600), cloud.forget_s);
+  if (const auto all_round = map.find("all_round")) cloud.all_round = all_round->boolean();
+  return cloud;
+}
+
 }  // namespace
 
 bool is_namespace(std::string_view text) {
@@ -238,9 +259,9 @@ std::string_view missing_security_file(const std::filesystem::path& folder) {
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(
       read_document(file),
-      {"format",  "name",      "connection", "system_id", "icao_address", "vehicle",   "takeoff_height", "min_height",
-       "heights", "waypoints", "arrival",    "geofence",  "map",          "no_fly",    "fence",          "dds",
-       "tracks",  "endings",   "state",      "setpoints", "intents",      "time_limit"},
+      {"format",  "name",      "connection", "system_id", "icao_address", "vehicle", "takeoff_height", "min_height",
+       "heights", "waypoints", "arrival",    "geofence",  "map",          "no_fly",  "fence",          "dds",
+       "tracks",  "cloud",     "endings",    "state",     "setpoints",    "intents", "time_limit"},
       "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
@@ -274,6 +295,7 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   if (const auto setpoints = map.find("setpoints")) mission.setpoints = read_transport(*setpoints);
   if (const auto intents = map.find("intents")) mission.intents = intents->boolean();
   if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
+  if (const auto cloud = map.find("cloud")) mission.cloud = read_cloud(*cloud);
   if (const auto endings = map.find("endings")) mission.endings = read_endings(*endings);
   mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
   return mission;

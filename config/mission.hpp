@@ -88,6 +88,21 @@ struct TrackPolicy {
   std::array<std::optional<GeodeticOrigin>, kTrackTopics.size()> origins;
 };
 
+/// A depth camera or lidar of the vehicle, whose clouds of points come over DDS.
+struct CloudPolicy {
+  std::string frame = "base_link";  ///< of the clouds, beside `map` and `ned`
+  /// Where that frame is in the body's (x ahead, y left, z up), m.
+  Vec3 position = Vec3::Zero();
+  /// Yaw, pitch and roll of that frame's axes there, rad: Rz(yaw) Ry(pitch) Rx(roll).
+  Vec3 orientation = Vec3::Zero();
+  double range = 8.0;      ///< m, farther points say only that the way to there is free
+  double timeout_s = 1.0;  ///< silence after which the clouds are stale
+  double forget_s = 60.0;  ///< after which what was seen well, and is seen no more, is not known any more
+  /// It sees all round. Else the vehicle looks where it flies, and is slow where it cannot yet.
+  bool all_round = false;
+  bool operator==(const CloudPolicy&) const = default;
+};
+
 struct Mission {
   std::string name;
   std::string connection;    ///< a MAVSDK URL
@@ -113,6 +128,7 @@ struct Mission {
   bool intents = true;                        ///< tells the team's other vehicles the committed path, and avoids theirs
   std::optional<std::uint32_t> icao_address;  ///< of the vehicle's own transponder
   TrackPolicy tracks;
+  std::optional<CloudPolicy> cloud;  ///< none: nothing is seen but tracks
   Endings endings;
   double time_limit = 300.0;
   double ground = 0.0;  ///< its height; no key of the file, see in_local_frame
@@ -124,7 +140,8 @@ struct Mission {
 /// system_id, icao_address (six hexadecimal digits), takeoff_height, min_height, heights (ground, origin or amsl),
 /// arrival, geofence (unbounded; with both min and max when given), map and no_fly (config/map_reader.hpp), fence
 /// (autopilot), dds and each of its keys (security: a folder, from
-/// the file's on), tracks and each of its keys, endings and each of its keys, state and setpoints (mavlink or dds),
+/// the file's on), tracks and each of its keys, cloud and each of its keys (mount: position and orientation; unknown:
+/// free), endings and each of its keys, state and setpoints (mavlink or dds),
 /// intents, time_limit.
 ///
 /// `connection` is scheme://ADDRESS with udp, udpin, udpout, tcp, tcpin or tcpout and [HOST]:PORT (udpout, tcp and

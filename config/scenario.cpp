@@ -17,8 +17,24 @@ constexpr std::size_t kMostObstacles = 10000;
 constexpr std::array<std::string_view, 2> kEstimates = {"px4", "none"};
 constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 
+Scan read_scan(const Value& value) {
+  static constexpr std::array<std::string_view, 2> kScanners = {"camera", "lidar"};
+  if (!value.is_map()) return value.choice(kScanners) == 0 ? depth_camera() : lidar();
+  const Map map(value, {"kind", "horizontal_deg", "vertical_deg", "columns", "rows", "range", "rate", "noise"});
+  Scan scan = map.at("kind", "camera or lidar").choice(kScanners) == 0 ? depth_camera() : lidar();
+  scan.horizontal_deg = map.number_or("horizontal_deg", above(0, 360), scan.horizontal_deg);
+  scan.vertical_deg = map.number_or("vertical_deg", above(0, 180), scan.vertical_deg);
+  if (const auto count = map.find("columns")) scan.columns = count->integer(closed(1, 2000));
+  if (const auto count = map.find("rows")) scan.rows = count->integer(closed(1, 2000));
+  scan.range = map.number_or("range", above(0, 25), scan.range);
+  scan.rate = map.number_or("rate", above(0, 100), scan.rate);
+  scan.noise = map.number_or("noise", closed(0, 10), scan.noise);
+  return scan;
+}
+
 Sensing read_sensing(const Value& value) {
-  const Map map(value, {"range", "rate", "delay", "position_noise", "velocity_noise", "dropout", "sensed_from"});
+  const Map map(value,
+                {"range", "rate", "delay", "position_noise", "velocity_noise", "dropout", "sensed_from", "scan"});
   Sensing sensing;
   sensing.range = map.number_or("range", above(0, 1e6), sensing.range);
   sensing.rate = map.number_or("rate", above(0, 1000), sensing.rate);
@@ -28,6 +44,7 @@ Sensing read_sensing(const Value& value) {
   sensing.dropout = map.number_or("dropout", below(0, 1), sensing.dropout);
   if (const auto from = map.find("sensed_from"))
     sensing.sensed_from = static_cast<SensedFrom>(from->choice(kSensedFrom));
+  if (const auto scan = map.find("scan")) sensing.scan = read_scan(*scan);
   return sensing;
 }
 
@@ -105,6 +122,14 @@ double default_time_limit(const Scenario& scenario) {
 
 }  // namespace
 
+Scan depth_camera() {
+  return {70.0, 50.0, 70, 50, 8.0, 15.0, 0.0};
+}
+
+Scan lidar() {
+  return {360.0, 60.0, 360, 40, 12.0, 10.0, 0.0};
+}
+
 std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
   std::vector<ScenarioVehicle> all{{scenario.start, scenario.target, scenario.vehicle_name, scenario.vehicle}};
   all.insert(all.end(), scenario.vehicles.begin(), scenario.vehicles.end());
@@ -139,6 +164,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
   std::erase_if(scenario.map, [&](const Obstacle& solid) {
     return planner::geometry::box_around(track_at_rest(solid)).max.z() <= ground + kRelief;
   });
+  if (!scenario.vehicles.empty() && scenario.sensing.scan)
+    map.at("sensing", "").fail("has a scan from one vehicle, and here are several; expected none");
   if (!scenario.vehicles.empty() && scenario.sensing.sensed_from == SensedFrom::kVehicle)
     map.at("sensing", "").fail("has tracks sensed from one vehicle, and here are several; expected sensed_from: world");
   if (const auto wind = map.find("wind")) scenario.wind = read_wind(*wind);

@@ -90,6 +90,22 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// What a depth camera or a lidar on the vehicle is: rays about the body's x axis, evenly spread in angle.
+struct Scan {
+  double horizontal_deg = 0.0;  ///< all of the field of view
+  double vertical_deg = 0.0;    ///< likewise
+  int columns = 0;
+  int rows = 0;
+  double range = 0.0;  ///< m
+  double rate = 0.0;   ///< Hz
+  double noise = 0.0;  ///< m, standard deviation along a ray
+  bool operator==(const Scan&) const = default;
+};
+/// 70 by 50 degrees, 8 m, 15 Hz.
+[[nodiscard]] Scan depth_camera();
+/// 360 by 60 degrees, 12 m, 10 Hz.
+[[nodiscard]] Scan lidar();
+
 /// How the world is measured: what the tracks look like.
 struct Sensing {
   double range = planner::base::kInfinity;  ///< from the vehicle's centre to the obstacle's surface
@@ -99,6 +115,7 @@ struct Sensing {
   double velocity_noise = 0.0;              ///< standard deviation per axis
   double dropout = 0.0;                     ///< probability that a track is missing from a message
   SensedFrom sensed_from = SensedFrom::kWorld;
+  std::optional<Scan> scan;  ///< of what stands; none: the map is known
   bool operator==(const Sensing&) const = default;
 };
 

@@ -116,6 +116,16 @@ std::string vehicle_text(const std::string& name, const planner::base::VehicleLi
   return map.add_unless(0.0, "drag", limits.drag).add_unless(0.0, "damping", limits.damping).text();
 }
 
+std::string scan_text(const Scan& scan) {
+  const Scan defaults = depth_camera();
+  FlowMap map;
+  map.add("kind", std::string("camera")).add_unless(defaults.horizontal_deg, "horizontal_deg", scan.horizontal_deg);
+  map.add_unless(defaults.vertical_deg, "vertical_deg", scan.vertical_deg);
+  map.add_unless(defaults.columns, "columns", scan.columns).add_unless(defaults.rows, "rows", scan.rows);
+  map.add_unless(defaults.range, "range", scan.range).add_unless(defaults.rate, "rate", scan.rate);
+  return map.add_unless(defaults.noise, "noise", scan.noise).text();
+}
+
 std::string sensing_text(const Sensing& sensing) {
   const Sensing defaults;
   FlowMap map;
@@ -125,6 +135,7 @@ std::string sensing_text(const Sensing& sensing) {
   map.add_unless(defaults.velocity_noise, "velocity_noise", sensing.velocity_noise);
   map.add_unless(defaults.dropout, "dropout", sensing.dropout);
   if (sensing.sensed_from != defaults.sensed_from) map.add("sensed_from", std::string("vehicle"));
+  if (sensing.scan) map.add("scan", scan_text(*sensing.scan));
   return map.text();
 }
 

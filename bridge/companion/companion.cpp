@@ -16,6 +16,7 @@ constexpr double kLow = 0.3;            // m, below min_height: less is noise
 constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
 constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
 constexpr double kSettling = 1.0;       // s, after which a vehicle that sinks is at rest in HOLD
+constexpr double kLookAhead = 1.5;      // s along the path, to where a vehicle with a camera turns
 constexpr double kFlat = 0.05;          // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
@@ -45,6 +46,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       supervisor_(mission, supervisor_settings(settings.companion)),
       reporter_(mission_, settings.horizon.margin, std::move(parts.observers)),
       intake_(mission_, settings_, parts.link, parts.tracks, parts.intents),
+      sight_(mission_, settings_, parts.clouds, parts.clock),
       motion_(mission_, settings_, parts.link, parts.clock, reporter_),
       planning_(mission_, settings_, parts.planner, reporter_),
       route_(mission_.waypoints) {}
@@ -54,6 +56,7 @@ bool Companion::step(double now) {
   notice_stall(now);
   take_state(now);
   take_tracks(now);
+  take_clouds(now);
   intake_.listen_to_team(now);
   take_plan(now);
   const vehicle::VehicleState& state = intake_.state();
@@ -94,7 +97,7 @@ void Companion::notice_stall(double now) {
 
 // An estimate that jumps takes along what is to be followed: the vehicle did not move.
 void Companion::take_state(double now) {
-  const Intake::FrameChange change = intake_.take_state();
+  const Intake::FrameChange& change = frame_change_ = intake_.take_state();
   reporter_.state(now, intake_.state());
   if (change.rebooted && supervisor_.phase() != supervisor::Phase::kWaiting) supervisor_.began_anew(now);
   if (!supervisor_.flight_began() || !change.shift) return;
@@ -142,6 +145,12 @@ void Companion::take_tracks(double now) {
   reporter_.tracks(now, intake_.table().predict(now, settings_.horizon.acceleration_trust));
 }
 
+void Companion::take_clouds(double now) {
+  sight_.take(now, intake_, frame_change_);
+  planning_.see(sight_.seen());
+  if (mission_.cloud) reporter_.clouds(now, sight_.source_status(), sight_.unplaced(), sight_.counts());
+}
+
 // A plan for something else than what is flown now was begun before that changed.
 void Companion::take_plan(double now) {
   std::optional<PlanResult> result = planning_.take(now, end());
@@ -163,6 +172,7 @@ supervisor::FlightContext Companion::context(double now) {
   supervisor::FlightContext context;
   context.newest_tracks = intake_.newest_tracks();
   context.silent_writer = intake_.silent_writer(now);
+  context.blind = sight_.is_stale(now);
   context.newest_plan = planning_.newest_plan();
   context.lost_writers = intake_.lost_writers(now, supervisor_.flight_began());
   context.unsent_for = motion_.unsent_for(now);
@@ -223,7 +233,9 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;
-  motion_.send(now, dt, state, turns ? std::optional(route_.target()) : std::nullopt);
+  const bool looks_ahead = mission_.cloud && !mission_.cloud->all_round;
+  const Vec3 towards = looks_ahead ? motion_.stream().reference(now + kLookAhead).position : route_.target();
+  motion_.send(now, dt, state, turns ? std::optional(towards) : std::nullopt);
 }
 
 // Plans to the stop's end take over from the stop, as long as they come; where they do not, it is looked at again.

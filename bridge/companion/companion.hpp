@@ -11,6 +11,7 @@
 #include "bridge/companion/planning.hpp"
 #include "bridge/companion/report.hpp"
 #include "bridge/companion/route.hpp"
+#include "bridge/companion/sight.hpp"
 #include "bridge/supervisor/supervisor.hpp"
 
 namespace jink::bridge::companion {
@@ -23,6 +24,7 @@ struct CompanionParts {
   const base::Clock* clock =
       nullptr;  ///< the one that step() is told; to measure what a step takes. Null: virtual time
   team::IntentTransport* intents = nullptr;  ///< to and from the team's other vehicles; null: there are none
+  map::CloudSource* clouds = nullptr;        ///< what a depth camera or a lidar sees; null: nothing does
 };
 
 /// Brings together what takes in, what plans, what moves and what reports; the supervisor decides. The parts outlive
@@ -51,6 +53,7 @@ class Companion {
   void notice_stall(double now);
   void take_state(double now);
   void take_tracks(double now);
+  void take_clouds(double now);
   void take_plan(double now);
   [[nodiscard]] supervisor::FlightContext context(double now);
   void move(double now, double dt, const supervisor::Decision& decision);
@@ -72,6 +75,8 @@ class Companion {
   supervisor::Supervisor supervisor_;
   FlightReporter reporter_;
   Intake intake_;
+  Intake::FrameChange frame_change_;  // in this turn
+  Sight sight_;
   MotionControl motion_;
   Planning planning_;
   Route route_;

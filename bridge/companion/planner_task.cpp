@@ -6,13 +6,17 @@
 #include <chrono>
 #include <utility>
 
+#include "planner/horizon/path_check.hpp"
+
 namespace jink::bridge::companion {
 namespace {
 
 // What climbs and what stops has nowhere to go.
-void lead(planner::horizon::Guide& guide, PlanJob& job, prediction::Obstacles& obstacles) {
+void lead(planner::horizon::Guide& guide, PlanJob& job, prediction::Obstacles& obstacles,
+          std::shared_ptr<const planner::geometry::StaticMap>& guided_by) {
   if (job.goal != Goal::Kind::kWaypoint) return;
   guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
+  if (planner::horizon::is_valid(job.request)) guided_by = job.map.map;
   job.standing.assign(guide.standing().begin(), guide.standing().end());
   planner::horizon::set_apart(job.standing, obstacles.tracks, obstacles.standing);
   set_obstacles(job, obstacles);
@@ -84,7 +88,7 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
       const double begun = clock_.now();
       prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
       set_obstacles(result.job, obstacles);
-      lead(guide_, result.job, obstacles);
+      lead(guide_, result.job, obstacles, guided_by_);
       const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
       const planner::base::Budget budget{
           settings_.horizon.generations,
@@ -116,7 +120,7 @@ void VirtualPlanner::start(PlanJob job) {
   result.job = std::move(job);
   prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
   set_obstacles(result.job, obstacles);
-  lead(guide_, result.job, obstacles);
+  lead(guide_, result.job, obstacles, guided_by_);
   const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
   result.plan =
       planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);

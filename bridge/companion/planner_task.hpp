@@ -13,6 +13,7 @@
 
 #include "bridge/base/clock.hpp"
 #include "bridge/base/notifier.hpp"
+#include "bridge/map/mapper.hpp"
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/setpoints/tracking_offset.hpp"
 #include "planner/geometry/static_map.hpp"
@@ -32,7 +33,8 @@ struct Goal {
 
 /// What a plan sees of the static map. With it the same obstacles are found again.
 struct MapView {
-  std::shared_ptr<const planner::geometry::StaticMap> map;  ///< shared by all plans of a flight; none: there is none
+  std::shared_ptr<const planner::geometry::StaticMap> map;  ///< shared by plans, also with threads; none: there is none
+  std::shared_ptr<const map::Seen> seen;                    ///< whose map it is; none: it is known beforehand
   planner::base::Box where;                                 ///< local ENU, m
   double up = 0.0;                                          ///< z of the local frame less the map's
   double floor = -planner::base::kInfinity;  ///< z; what reaches no higher is the ground, not an obstacle
@@ -128,6 +130,7 @@ class ThreadedPlanner final : public PlannerTask {
   const base::Clock& clock_;
   base::Notifier* done_;
   planner::horizon::Guide guide_;
+  std::shared_ptr<const planner::geometry::StaticMap> guided_by_;  // the guide knows its map by where it is
   planner::horizon::HorizonPlanner planner_;
   planner::base::WorkerPool pool_;
   mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_
@@ -152,6 +155,7 @@ class VirtualPlanner final : public PlannerTask {
   PlannerTaskSettings settings_;
   double latency_;
   planner::horizon::Guide guide_;
+  std::shared_ptr<const planner::geometry::StaticMap> guided_by_;  // the guide knows its map by where it is
   planner::horizon::HorizonPlanner planner_;
   planner::base::WorkerPool pool_;
   std::optional<PlanResult> result_;

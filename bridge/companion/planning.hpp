@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,6 +38,8 @@ class Planning {
   /// Starts a plan. Precondition: due().
   void start(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
   void tracks_came() { new_tracks_ = true; }
+  /// What has been seen to stand, from now on; null: nothing is known but the mission's map.
+  void see(std::shared_ptr<const map::Seen> seen) { seen_ = std::move(seen); }
   /// The reference to stop along, by what is known now, without the planner.
   [[nodiscard]] planner::base::TimedPath stop(double now, Intake& intake, const MotionControl& motion,
                                               const MotionControl::StopStart& start);
@@ -61,6 +64,9 @@ class Planning {
                                                                    const MotionControl::StopStart& start);
   void look_around(double now, Intake& intake, PlanJob& job) const;
   void look_at_map(const vehicle::VehicleState& state, PlanJob& job) const;
+  /// Where the vehicle sees by clouds alone what stands, no faster than it can stop within that; slow where it flies
+  /// aside of where it looks.
+  void keep_in_sight(const vehicle::VehicleState& state, planner::horizon::PathRequest& request) const;
   /// The speed up to which plans can be followed with this drag, 1/s; never below the cruise speed.
   [[nodiscard]] double attainable_speed(double drag) const;
   void demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const;
@@ -76,7 +82,8 @@ class Planning {
   std::optional<double> last_begun_;
   Goal::Kind last_goal_ = Goal::Kind::kWaypoint;
   bool new_tracks_ = false;  // since then
-  double rate_kept_ = 0.0;   // from when on another plan would be no more than the largest rate
+  std::shared_ptr<const map::Seen> seen_;
+  double rate_kept_ = 0.0;  // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;
   Vec3 planned_for_ = Vec3::Zero();  // by the newest plan: the goal's target,
   Vec3 planned_to_ = Vec3::Zero();   // and where its path ends, which may be on the way there

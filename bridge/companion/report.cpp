@@ -139,6 +139,23 @@ void FlightReporter::sending(double now, bool works) {
         : event(now, "send_failed", "setpoints cannot be sent");
 }
 
+void FlightReporter::clouds(double now, const map::CloudSourceStatus& source, std::uint64_t unplaced,
+                            const map::MapperCounts& map) {
+  summary_.clouds = map.clouds;
+  summary_.dropped_clouds = source.refused + source.malformed + unplaced;
+  if (said_.clouds_at && std::floor(now) == std::floor(*said_.clouds_at)) return;
+  said_.clouds_at = now;
+  if (source.refused != said_.clouds.refused)
+    event(now, "clouds_refused", std::to_string(source.refused) + " clouds of points: " + source.last_refusal);
+  if (source.malformed != said_.clouds.malformed)
+    event(now, "clouds_malformed",
+          std::to_string(source.malformed) + " clouds of points could not be decoded, or have no x, y and z");
+  if (changed(said_.unplaced, unplaced))
+    event(now, "clouds_refused",
+          std::to_string(unplaced) + " clouds of points of times at which it is not known where the vehicle was");
+  said_.clouds = source;
+}
+
 void FlightReporter::announce(double now, const supervisor::Supervisor& supervisor, Intake& intake, double margin,
                               double tracking_error) {
   if (team::Team* team = intake.team()) {

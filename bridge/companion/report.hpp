@@ -12,6 +12,8 @@
 
 #include "bridge/companion/intake.hpp"
 #include "bridge/companion/planner_task.hpp"
+#include "bridge/map/clouds.hpp"
+#include "bridge/map/mapper.hpp"
 #include "bridge/supervisor/supervisor.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "config/mission.hpp"
@@ -62,6 +64,8 @@ struct FlightSummary {
   std::uint64_t blocked_plans = 0;
   std::uint64_t deadline_misses = 0;
   std::uint64_t dropped_tracks = 0;
+  std::uint64_t clouds = 0;          ///< of points, that the map was made of
+  std::uint64_t dropped_clouds = 0;  ///< refused, malformed, or not to be placed
   std::vector<double> plan_ms;
   std::vector<double> track_to_setpoint_ms;
 };
@@ -94,6 +98,8 @@ class FlightReporter {
   void stuck(double now, bool stuck);
   void sending(double now, bool works);
   void aircraft(double now, const std::optional<Intake::Approach>& approach);
+  /// What became of clouds of points: those refused, or of a time at which it is not known where the vehicle was.
+  void clouds(double now, const map::CloudSourceStatus& source, std::uint64_t unplaced, const map::MapperCounts& map);
   /// At the end of a step: what changed in it. `margin` is the planner's, for `tracking_error`.
   void announce(double now, const supervisor::Supervisor& supervisor, Intake& intake, double margin,
                 double tracking_error);
@@ -112,6 +118,9 @@ class FlightReporter {
          margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
+    map::CloudSourceStatus clouds;
+    std::uint64_t unplaced = 0;
+    std::optional<double> clouds_at;
     tracking::TrackTableCounts table;
     std::uint64_t elsewhere = 0;
     std::set<std::uint32_t> aircraft;

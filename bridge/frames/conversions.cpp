@@ -31,6 +31,11 @@ double yaw_enu_from_heading(double heading_ned) {
   return wrap_angle(pi / 2.0 - heading_ned);
 }
 
+Eigen::Quaterniond attitude_enu(double yaw_enu, double pitch, double roll) {
+  return Eigen::AngleAxisd(yaw_enu, Vec3::UnitZ()) * Eigen::AngleAxisd(-pitch, Vec3::UnitY()) *
+         Eigen::AngleAxisd(roll, Vec3::UnitX());
+}
+
 double heading_from_yaw_enu(double yaw_enu) {
   return wrap_angle(pi / 2.0 - yaw_enu);
 }

@@ -27,6 +27,10 @@ namespace jink::bridge::frames {
 /// Yaw (counter-clockwise from east) to heading (clockwise from north), in (-pi, pi].
 [[nodiscard]] double heading_from_yaw_enu(double yaw_enu);
 
+/// Body (x ahead, y left, z up) to ENU, from a yaw as above and the pitch (nose up) and roll (right side down) that
+/// autopilots tell.
+[[nodiscard]] Eigen::Quaterniond attitude_enu(double yaw_enu, double pitch, double roll);
+
 /// The tangent plane at an origin on the WGS 84 ellipsoid: local ENU to geodetic coordinates and back.
 class LocalFrame {
  public:

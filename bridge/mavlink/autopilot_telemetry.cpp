@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "bridge/frames/conversions.hpp"
 
 namespace jink::bridge::mavlink {
 
 namespace {
 
-constexpr std::uint32_t kRcReceiver = 0x10000;  // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+constexpr std::uint32_t kRcReceiver = 0x10000;          // MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+constexpr double kHalfTurn = 1.001 * std::numbers::pi;  // rad, the most that a pitch or a roll is, and rounding
 
 struct FailsafeParameter {
   const char* name;
@@ -124,10 +128,14 @@ void AutopilotTelemetry::on(double now, const Ping& message) {
   state_.link_delay = delay_.one_way();
 }
 
-void AutopilotTelemetry::on(const Attitude& message) {
+void AutopilotTelemetry::on(double now, const Attitude& message) {
   boot_time(message.boot_ms);
   ++counts_.attitudes;
   state_.yaw = message.yaw;
+  if (!(std::abs(message.pitch) <= kHalfTurn && std::abs(message.roll) <= kHalfTurn)) return;
+  const double behind = 1e-3 * static_cast<std::int32_t>(*boot_ms_ - message.boot_ms);
+  state_.attitude = frames::attitude_enu(message.yaw, message.pitch, message.roll);
+  state_.attitude_stamp = now - delay_.one_way() - behind;
 }
 
 void AutopilotTelemetry::on(const Odometry& message) {

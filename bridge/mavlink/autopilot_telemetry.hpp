@@ -70,7 +70,7 @@ class AutopilotTelemetry {
   bool on(double now, const LocalPosition& message);
   /// An answer to our own PING.
   void on(double now, const Ping& message);
-  void on(const Attitude& message);
+  void on(double now, const Attitude& message);
   void on(const Odometry& message);
   void on(const SysStatus& message);
   void on(const ExtendedSysState& message);

@@ -81,6 +81,8 @@ bool read(const json& fields, LocalPosition& message) {
 bool read(const json& fields, Attitude& message) {
   const double heading = number(fields, "yaw");
   message.yaw = frames::yaw_enu_from_heading(heading);
+  message.pitch = number(fields, "pitch");
+  message.roll = number(fields, "roll");
   return std::abs(heading) <= Limits::kHeading && read(fields, "time_boot_ms", message.boot_ms);
 }
 

@@ -43,7 +43,9 @@ struct LocalPosition {
 };
 struct Attitude {
   std::uint32_t boot_ms = 0;
-  double yaw = 0.0;  ///< counter-clockwise from east, rad
+  double yaw = 0.0;    ///< counter-clockwise from east, rad
+  double pitch = 0.0;  ///< nose up, rad
+  double roll = 0.0;   ///< right side down, rad
 };
 /// ODOMETRY, in ENU.
 struct Odometry {

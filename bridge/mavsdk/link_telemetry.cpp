@@ -151,7 +151,7 @@ void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::C
 
 void MavsdkLink::Impl::on(double now, const Sender& /*sender*/, const mavlink::Attitude& message) {
   const std::scoped_lock lock(mutex_);
-  telemetry_.on(message);
+  telemetry_.on(now, message);
   tally(kAttitude, now);
 }
 

@@ -42,6 +42,7 @@ constexpr Hazard kHazards[] = {
      kBrake, &E::tracks},
     {"a writer of obstacle tracks has fallen silent",
      [](const S& s) { return s.tracks.required && s.flight.lost_writers > 0; }, kBrake, &E::tracks},
+    {"the clouds of points are stale", [](const S& s) { return s.flight.blind; }, kBrake, &E::tracks},
     {"setpoints cannot be sent", [](const S& s) { return s.flight.unsent_for > kUnsent; }, kBrake, &E::link},
     {"the planner is late",
      [](const S& s) {

@@ -24,6 +24,7 @@ struct SupervisorSettings {
 struct FlightContext {
   std::optional<double> newest_tracks;  ///< reception of the newest track message, see Intake
   std::string silent_writer;            ///< of tracks, that the mission names; empty: there is none
+  bool blind = false;                   ///< the mission wants clouds of points, and none has come for too long
   std::optional<double> newest_plan;    ///< when the newest plan was made
   int lost_writers = 0;         ///< writers of tracks that were live in this flight and are silent, not replaced
   double unsent_for = 0.0;      ///< s, for which setpoints could not be handed to the transport

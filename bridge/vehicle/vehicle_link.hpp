@@ -3,6 +3,7 @@
 // link of sim/flight/closed_loop. Frame: local ENU from the autopilot's local origin; yaw counter-clockwise from east.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -54,8 +55,11 @@ struct VehicleState {
   /// the height (ESTIMATOR_STATUS, VehicleLocalPosition); 0: it states none.
   double position_sigma = 0.0;
   double yaw = 0.0;
-  bool armable = false;            ///< the autopilot's own pre-arm checks pass
-  bool local_position_ok = false;  ///< its estimator holds a local position
+  /// Body (x ahead, y left, z up) to ENU, with that yaw; level where only a yaw is told.
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
+  double attitude_stamp = base::kNever;  ///< when it was so
+  bool armable = false;                  ///< the autopilot's own pre-arm checks pass
+  bool local_position_ok = false;        ///< its estimator holds a local position
   bool gps_lost = false;           ///< it has a GPS that it counts on, and that has no fix: the position will drift
   bool in_air = false;             ///< landed state says so (or taking off, landing)
   bool landed_state_known = true;  ///< false: the autopilot has not told yet

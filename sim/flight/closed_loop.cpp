@@ -12,6 +12,7 @@
 #include "sim/faults/vehicle_faults.hpp"
 #include "sim/flight/closed_loop_judge.hpp"
 #include "sim/flight/team_link.hpp"
+#include "sim/flight/virtual_clouds.hpp"
 #include "sim/flight/virtual_transport.hpp"
 #include "sim/vehicle/autopilot.hpp"
 
@@ -19,6 +20,7 @@ namespace jink::sim::flight {
 namespace {
 
 constexpr double kGroundBelow = 1000.0;  // m
+constexpr double kAllRound_deg = 340.0;  // of a scan, from which on it does not matter where a vehicle looks
 
 }  // namespace
 
@@ -32,7 +34,13 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
   mission.waypoints = {own.target};
   mission.arrival = config::Arrival::kHold;
   mission.geofence = scenario.world.value_or(planner::base::Box{});
-  mission.map = config::make_map(scenario.map);
+  if (const auto& scan = scenario.sensing.scan) {  // the map is there to be seen
+    mission.cloud.emplace();
+    mission.cloud->range = scan->range;
+    mission.cloud->all_round = scan->horizontal_deg > kAllRound_deg;
+  } else {
+    mission.map = config::make_map(scenario.map);
+  }
   mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
   mission.time_limit = scenario.time_limit;
   mission.tracks.sensed_from = scenario.sensing.sensed_from;
@@ -78,14 +86,19 @@ struct Member {
       : autopilot(vehicle_of(world.scenario(), options.seed, number)),
         link(autopilot, options.seed),
         tracks(world, timeline, options.seed),
+        clouds(clouds_of(number, world, options)),
         planner(make_planner(settings, options)),
         companion(mission_of(world.scenario(), number), settings,
-                  {link, tracks, *planner, observers_of(number, options), nullptr, intents}) {}
+                  {link, tracks, *planner, observers_of(number, options), nullptr, intents, clouds.get()}) {}
 
   /// The flight observers are told of the first vehicle's companion.
   static std::vector<bridge::companion::FlightObserver*> observers_of(std::size_t number,
                                                                       const ClosedLoopOptions& options) {
     return number == 0 ? options.flight_observers : std::vector<bridge::companion::FlightObserver*>{};
+  }
+  static std::unique_ptr<VirtualClouds> clouds_of(std::size_t number, const world::World& world,
+                                                  const ClosedLoopOptions& options) {
+    return world.scenario().sensing.scan ? std::make_unique<VirtualClouds>(world, options.seed, number) : nullptr;
   }
   [[nodiscard]] world::VehicleTruth truth() const {
     return {autopilot.true_motion().position, autopilot.true_motion().velocity};
@@ -94,6 +107,7 @@ struct Member {
   vehicle::Autopilot autopilot;
   VirtualLink link;
   VirtualTracks tracks;
+  std::unique_ptr<VirtualClouds> clouds;  // null: nothing is scanned
   std::unique_ptr<bridge::companion::PlannerTask> planner;
   bridge::companion::Companion companion;
   bool over = false;  ///< its companion is done; it hangs where that left it
@@ -137,6 +151,8 @@ class Flight {
       truths.push_back(member->truth());
     }
     const bool ended = judge_.watch(t, truths);
+    for (const auto& member : members_)
+      if (member->clouds) member->clouds->advance(t, member->autopilot);
     for (const auto& member : members_) member->tracks.advance(t, truths, faults::estimate_error(member->autopilot));
     if (turn || ended) {
       for (world::TruthObserver* observer : options_.truth_observers) observer->on_truth(t, truths, world_);

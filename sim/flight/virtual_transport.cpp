@@ -162,6 +162,7 @@ void VirtualLink::deliver(const bridge::vehicle::VehicleState& state) {
   state_.link_delay = link_delay_;
   state_.motion.received = now_;
   state_.motion.stamp = now_ - state_.link_delay;
+  state_.attitude_stamp = state_.motion.stamp;
   if (!state.local_position_ok) state_.motion = motion_before;
 }
 
@@ -193,6 +194,7 @@ bridge::vehicle::VehicleState VirtualLink::snapshot() const {
                                                               autopilot_.estimator().vertical_accuracy());
   state.home_height = 0.0;  // a scenario's heights count from its origin, wherever its ground is
   state.yaw = motion.yaw;
+  state.attitude = motion.attitude;
   state.armable = autopilot_.prearm_ok();
   state.local_position_ok = autopilot_.position_valid();
   state.gps_lost = !autopilot_.estimator().gps();

@@ -60,6 +60,13 @@ class World {
   /// For people: "obstacle 1" is the first of the file, "map solid 1" the first of the map.
   [[nodiscard]] std::string name(int i) const;
 
+  /// Obstacle or solid `i` as the file has it.
+  [[nodiscard]] const config::Obstacle& spec(int i) const {
+    const auto place = static_cast<std::size_t>(i);
+    const std::size_t moving = scenario_.obstacles.size();
+    return place < moving ? scenario_.obstacles[place] : scenario_.map[place - moving];
+  }
+
   /// The state of the reference point of obstacle `i`. See state_at().
   [[nodiscard]] ObstacleState obstacle(int i, double t) const;
 
@@ -101,11 +108,6 @@ class World {
   [[nodiscard]] bool start_blocked() const { return clearance(scenario_.start, 0.0) < 0.0; }
 
  private:
-  [[nodiscard]] const config::Obstacle& spec(int i) const {
-    const auto place = static_cast<std::size_t>(i);
-    const std::size_t moving = scenario_.obstacles.size();
-    return place < moving ? scenario_.obstacles[place] : scenario_.map[place - moving];
-  }
   [[nodiscard]] const planner::geometry::Sphere& bound(int i) const { return bounds_[static_cast<std::size_t>(i)]; }
 
   config::Scenario scenario_;

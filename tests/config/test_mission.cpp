@@ -48,6 +48,24 @@ TEST(LoadMission, ReadsEveryKey) {
   EXPECT_EQ(m.time_limit, 120.0);
 }
 
+TEST(LoadMission, WhatSeesIsMountedOnTheVehicle) {
+  const Folder folder;
+  EXPECT_FALSE(load_mission(folder.write("m.yaml", kValidMission)).cloud.has_value());
+  EXPECT_EQ(load_mission(folder.write("m.yaml", kValidMission + "cloud: {}\n")).cloud, CloudPolicy());
+  const std::string cloud =
+      "cloud: {frame: camera, mount: {position: [0.1, 0, 0.05], orientation: [0.2, 0.3, 0.4]}, range: 6, "
+      "unknown: free, timeout_s: 2, forget_s: 30, all_round: true}\n";
+  CloudPolicy expected;
+  expected.frame = "camera";
+  expected.position = {0.1, 0, 0.05};
+  expected.orientation = {0.2, 0.3, 0.4};
+  expected.range = 6;
+  expected.timeout_s = 2;
+  expected.forget_s = 30;
+  expected.all_round = true;
+  EXPECT_EQ(load_mission(folder.write("m.yaml", kValidMission + cloud)).cloud, expected);
+}
+
 TEST(LoadMission, HeightsAreAboveWhatItSays) {
   const Folder folder;
   const std::string head =
@@ -271,6 +289,14 @@ TEST(LoadMission, RefusesBadValues) {
       {"coast_s: 0.5", "sources: []", 11, "tracks.sources", "[]", "a list with a number of elements in [1, 4]"},
       {"coast_s: 0.5", "sources: [radar]", 11, "tracks.sources[0]", "radar",
        "is not one of jink, autoware, vision, adsb"},
+      {"time_limit: 120", "cloud: {range: 1}", 12, "cloud.range", "1", "is not in [2, 25]"},
+      {"time_limit: 120", "cloud: {ranges: 8}", 12, "cloud.ranges", "", "did you mean 'range'?"},
+      {"time_limit: 120", "cloud: {frame: map}", 12, "cloud.frame", "map", "is known without"},
+      {"time_limit: 120", "cloud: {unknown: occupied}", 12, "cloud.unknown", "occupied", "expected free"},
+      {"time_limit: 120", "cloud: {unknown: solid}", 12, "cloud.unknown", "solid", "is not one of free, occupied"},
+      {"time_limit: 120", "cloud: {mount: {position: [0, 0]}}", 12, "cloud.mount.position", "", ""},
+      {"time_limit: 120", "cloud: {mount: {place: [0, 0, 0]}}", 12, "cloud.mount.place", "", "position"},
+      {"time_limit: 120", "cloud: {timeout_s: 0}", 12, "cloud.timeout_s", "0", "is not in (0, 60]"},
       {"time_limit: 120", "endings: {tracks: loiter}", 12, "endings.tracks", "loiter", "not one of hold, land, return"},
       {"time_limit: 120", "endings: {position: return}", 12, "endings.position", "return", "expected hold or land"},
       {"time_limit: 120", "endings: {battery: hold}", 12, "endings.battery", "hold", "accept: [hover_until_empty]"},

@@ -458,5 +458,24 @@ TEST(LoadScenario, BlamesTheVehicleFileForItsOwnFaults) {
   expect_contains(error_of([&] { static_cast<void>(load_scenario(file, folder.path())); }), vehicle.string() + ":");
 }
 
+TEST(LoadScenario, AScanIsACameraOrALidarOrGivenInFull) {
+  const Folder folder;
+  const auto scan = [&](const std::string& text) {
+    return load_scenario(folder.write("s.yaml",
+                                      "format: jink-scenario/1\nname: s\nstart: [0, 0, 1]\ntarget: [9, 0, 1]\n"
+                                      "vehicle: ardrone2\nobstacles: []\nsensing: {scan: " +
+                                          text + "}\n"))
+        .sensing.scan;
+  };
+  EXPECT_EQ(scan("camera"), depth_camera());
+  EXPECT_EQ(scan("lidar"), lidar());
+  EXPECT_EQ(scan("{kind: lidar, horizontal_deg: 180, vertical_deg: 40, columns: 90, rows: 16, range: 20, rate: 5, "
+                 "noise: 0.02}"),
+            (Scan{180, 40, 90, 16, 20, 5, 0.02}));
+  for (const char* bad : {"sonar", "{rate: 5}", "{kind: camera, range: 26}", "{kind: camera, columns: 0}",
+                          "{kind: camera, fov: 3}", "{kind: camera, rate: 0}", "{kind: camera, noise: -1}"})
+    expect_contains(error_of([&] { static_cast<void>(scan(bad)); }), "sensing.scan");
+}
+
 }  // namespace
 }  // namespace jink::config

@@ -15,6 +15,7 @@
 #include "bridge/base/clock.hpp"
 #include "bridge/companion/companion.hpp"
 #include "bridge/companion/pilot_texts.hpp"
+#include "bridge/dds/clouds.hpp"
 #include "bridge/dds/intents.hpp"
 #include "bridge/dds/px4_link.hpp"
 #include "bridge/dds/tracks.hpp"
@@ -143,6 +144,8 @@ struct Transports {
       vehicle = &dds_vehicle.emplace(mavlink, node, clock, options);
     }
     if (mission.intents) intents.emplace(node, clock);
+    if (mission.cloud)
+      clouds.emplace(node, clock, bridge::dds::CloudReaderOptions{mission.tracks.name_space, mission.cloud->frame});
   }
   Transports(const Transports&) = delete;
   Transports& operator=(const Transports&) = delete;
@@ -150,7 +153,7 @@ struct Transports {
   bridge::companion::CompanionParts parts(bridge::companion::PlannerTask& planner,
                                           const std::vector<bridge::companion::FlightObserver*>& observers,
                                           const bridge::base::Clock& clock) {
-    return {*vehicle, tracks, planner, observers, &clock, intents ? &*intents : nullptr};
+    return {*vehicle, tracks, planner, observers, &clock, intents ? &*intents : nullptr, clouds ? &*clouds : nullptr};
   }
 
   bridge::dds::DdsParticipant node;
@@ -160,6 +163,7 @@ struct Transports {
   bridge::vehicle::VehicleLink* vehicle;
   std::optional<bridge::dds::DdsVehicleLink> dds_vehicle;
   std::optional<bridge::dds::DdsIntents> intents;
+  std::optional<bridge::dds::DdsCloudReader> clouds;
 };
 
 /// Makes the fence that the autopilot keeps a part of the mission's map. Gives back how the flight ends before it

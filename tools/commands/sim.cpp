@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "bridge/base/clock.hpp"
+#include "bridge/dds/clouds.hpp"
 #include "bridge/dds/tracks.hpp"
 #include "config/mission.hpp"
 #include "config/scenario.hpp"
 #include "sim/dds/vehicle_topics.hpp"
 #include "sim/flight/simulator.hpp"
+#include "sim/flight/virtual_clouds.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/cli/progress_line.hpp"
 #include "tools/cli/summaries.hpp"
@@ -223,6 +225,31 @@ nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const
   return summary;
 }
 
+/// What the vehicle's depth camera or lidar sees, as a ROS 2 driver would publish it.
+class CloudSide {
+ public:
+  CloudSide(const SimOptions& options, const sim::flight::Simulator& simulator)
+      : speed_(options.speed),
+        simulator_(simulator),
+        node_(options.domain, "jink sim camera", options.dds_security),
+        writer_(node_, options.tracks_namespace),
+        pipeline_(simulator.world(), options.common.seed, 0) {}
+
+  void step(double now, const sim::vehicle::Autopilot& autopilot) {
+    const double clock_start = simulator_.clock_runs() ? now - simulator_.scenario_time() : planner::base::kInfinity;
+    pipeline_.step(now, sim::flight::body_of(autopilot), clock_start);
+    sim::world::ScanMessage seen;
+    while (pipeline_.poll(now, seen)) (void)writer_.publish(seen.points, unix_now() - (now - seen.stamp) / speed_);
+  }
+
+ private:
+  double speed_;
+  const sim::flight::Simulator& simulator_;
+  bridge::dds::DdsParticipant node_;
+  bridge::dds::DdsCloudWriter writer_;
+  sim::world::ScanPipeline pipeline_;
+};
+
 void introduce(const config::Scenario& scenario, const SimOptions& options, cli::BackgroundPrinter& printer) {
   printer.line(
       fmt::format("scenario {}: {} obstacles{}{}, seed {}", scenario.name, scenario.obstacles.size(),
@@ -305,11 +332,14 @@ int run(const SimOptions& options) {
   choices.clock_rate = options.boot_clock.value_or(options.lockstep ? 1.0 : sim::mavlink::kSitlClockRate);
   std::optional<DdsSides> dds;
   if (options.dds_vehicle) dds.emplace(options, 1 + scenario.vehicles.size());
-  const auto on_step = [&dds](std::size_t k, double now, sim::vehicle::Autopilot& autopilot) {
+  std::optional<CloudSide> clouds;
+  const auto on_step = [&dds, &clouds](std::size_t k, double now, sim::vehicle::Autopilot& autopilot) {
     if (dds) dds->step(k, now, autopilot);
+    if (clouds) clouds->step(now, autopilot);
   };
   const std::unique_ptr<sim::flight::Simulator> simulator =
       make_simulator(scenario, choices, {publish, {&log_sink}, on_step});
+  if (scenario.sensing.scan && !options.no_vehicle) clouds.emplace(options, *simulator);
   if (!options.log.empty())  // what another simulator writes is left alone where that has the port
     log = std::make_unique<log::FlightLog>(options.log, cli::scenario_header(scenario, options.common.seed, settings));
   log_sink.write_to(log.get());

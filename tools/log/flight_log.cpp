@@ -160,7 +160,34 @@ void FlightLog::write_content(double t, const std::vector<planner::base::Track>&
   end_line();
 }
 
+// What has changed since what the plan before saw: most of it stays as it is.
+void FlightLog::write_seen(double t, const std::shared_ptr<const bridge::map::Seen>& seen) {
+  if (seen == nullptr || (seen_ != nullptr && seen->number == seen_->number)) return;
+  using Boxes = std::vector<bridge::map::CellBox>;
+  const Boxes none;
+  const Boxes& before = seen_ == nullptr ? none : seen_->boxes;
+  const auto add = [this](std::string_view key, const Boxes& all, const Boxes& but) {
+    line_.key(key).open('[');
+    auto other = but.begin();
+    for (const bridge::map::CellBox& box : all) {  // both are in order
+      while (other != but.end() && bridge::map::comes_before(*other, box)) ++other;
+      if (other != but.end() && *other == box) continue;
+      line_.open('[');
+      for (const bridge::map::Cell& corner : {box.min, box.max})
+        for (const int number : corner) line_.number(number);
+      line_.close(']');
+    }
+    line_.close(']');
+  };
+  begin("seen", t).key("number").integer(seen->number).key("origin").exact_vector(seen->origin);
+  add("added", seen->boxes, before);
+  add("removed", before, seen->boxes);
+  end_line();
+  seen_ = seen;
+}
+
 void FlightLog::write_content(double t, const bridge::companion::PlanResult& result) {
+  write_seen(t, result.job.map.seen);
   const planner::verify::Plan& plan = result.plan;
   begin("plan", t).key("path").open('[');
   for (const planner::base::TimedPoint& point : plan.path) {
@@ -227,8 +254,10 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
     line_.close('}');
   }
   line_.close(']');
-  if (const auto& [map, where, up, floor, sigma] = job.map; map != nullptr && !map->tracks().empty()) {
-    line_.key("map").open('{').key("where").open('[').exact_vector(where.min).exact_vector(where.max).close(']');
+  if (const auto& [map, seen, where, up, floor, sigma] = job.map; map != nullptr && !map->tracks().empty()) {
+    line_.key("map").open('{');
+    if (seen != nullptr) line_.key("seen").integer(seen->number);
+    line_.key("where").open('[').exact_vector(where.min).exact_vector(where.max).close(']');
     line_.key("up").exact(up).key("floor").exact(floor).key("sigma").exact(sigma).close('}');
   }
   add_points("previous", job.previous);

@@ -42,8 +42,10 @@ struct FlightLogOptions {
 /// it has several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks
 /// {tracks:
 /// [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]}, plan {path: [[t, x, y, z], ...], ms, status, ...,
-/// from}, setpoint {p, v, a, yaw}, event {name, detail}. Vectors are [x, y, z], ENU, m. `t` of truth and obstacles is
-/// scenario time, of the others the companion's clock; in `replay` the two are one.
+/// from}, setpoint {p, v, a, yaw}, event {name, detail}, and before a plan that sees another map than the one before it
+/// seen {number, origin, added: [[six integers], ...], removed: likewise}: boxes of cells from the first three up to
+/// the last three (bridge::map::Seen; a cell is Occupancy::kCell wide). Vectors are [x, y, z], ENU, m. `t` of truth and
+/// obstacles is scenario time, of the others the companion's clock; in `replay` the two are one.
 ///
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
@@ -54,10 +56,11 @@ struct FlightLogOptions {
 /// ...] of the tracks that count among what stands, forecasts: [{track, radius, position_sigma, velocity_sigma,
 /// plain_until, bounces: [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in
 /// a row), paths: [{id, offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z],
-/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {where: [min, max], up, floor, sigma}, what of
-/// the header's map was in view (bridge::companion::MapView), and previous: [[t, x, y, z], ...]}, all valid at `start`,
-/// the previous path's times from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With
-/// the header's seed and parameters the plan can be made again (tools/log/flight_replay.hpp).
+/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {seen, where: [min, max], up, floor, sigma},
+/// what of the header's map, or of that and the boxes of the `seen` record of that number, was in view
+/// (bridge::companion::MapView), and previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
+/// from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and
+/// parameters the plan can be made again (tools/log/flight_replay.hpp).
 ///
 /// The observers may be called from one thread at a time.
 class FlightLog final : public bridge::companion::FlightObserver, public sim::world::TruthObserver {
@@ -107,6 +110,7 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
   void work(const std::stop_token& stop);
   void write(const Record& record);
   void end_line();
+  void write_seen(double t, const std::shared_ptr<const bridge::map::Seen>& seen);
   void write_content(double t, const bridge::vehicle::VehicleState& state);
   void write_content(double t, const std::vector<planner::base::Track>& tracks);
   void write_content(double t, const bridge::companion::PlanResult& result);
@@ -121,8 +125,9 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
 
   std::filesystem::path file_;
   FlightLogOptions options_;
-  std::ofstream out_;      // the thread's own, once that runs
-  base::JsonWriter line_;  // likewise
+  std::ofstream out_;                              // the thread's own, once that runs
+  base::JsonWriter line_;                          // likewise
+  std::shared_ptr<const bridge::map::Seen> seen_;  // likewise: what was written last
 
   mutable std::mutex mutex_;  // guards all below but the thread
   std::condition_variable_any filled_, emptied_;

@@ -240,6 +240,38 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   return job;
 }
 
+bridge::map::CellBox box_of(const Json& item) {
+  constexpr double kFarthest = 1e7;  // cells
+  const auto numbers = exact_numbers<6>(item, "boxes");
+  if (!std::all_of(numbers.begin(), numbers.end(),
+                   [](double n) { return std::abs(n) <= kFarthest && n == std::floor(n); }))
+    refuse("a box of cells holds what is no number of a cell");
+  const Eigen::Map<const Eigen::Array<double, 6, 1>> corners(numbers.data());
+  const bridge::map::CellBox box{corners.head<3>().cast<int>(), corners.tail<3>().cast<int>()};
+  if (!(box.min.array() < box.max.array()).all()) refuse("a box of cells is empty");
+  return box;
+}
+
+/// What a plan saw, from what the one before it saw and what has changed; null: nothing.
+std::shared_ptr<const bridge::map::Seen> seen_of(const Json& record, const bridge::map::Seen* before,
+                                                 const planner::geometry::StaticMap* known) {
+  bridge::map::Seen seen;
+  if (before != nullptr) seen.boxes = before->boxes;
+  seen.number = count_of(record, "number");
+  seen.origin = exact_vector_of(record, "origin");
+  if (!seen.origin.allFinite()) refuse("\"origin\" is not finite");
+  for (const Json& item : list_of(record, "removed")) {
+    const auto gone = std::find(seen.boxes.begin(), seen.boxes.end(), box_of(item));
+    if (gone == seen.boxes.end()) refuse("\"removed\" names a box that is not there");
+    seen.boxes.erase(gone);
+  }
+  for (const Json& item : list_of(record, "added")) seen.boxes.push_back(box_of(item));
+  std::sort(seen.boxes.begin(), seen.boxes.end(), bridge::map::comes_before);
+  const planner::geometry::StaticMap none;
+  seen.map = bridge::map::with_boxes(known != nullptr ? *known : none, seen.boxes, seen.origin);
+  return std::make_shared<const bridge::map::Seen>(std::move(seen));
+}
+
 std::uint64_t bits(double x) {
   return std::bit_cast<std::uint64_t>(x);
 }
@@ -296,6 +328,10 @@ std::optional<RecordedPlan> FlightRecording::next() {
   for (Json record; lines_.next(record);) {
     try {
       const std::string type = text_of(record, "type");
+      if (type == "seen") {
+        seen_ = seen_of(record, seen_.get(), map_.get());
+        continue;
+      }
       if (type != "plan") {
         unknown_ += std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end() ? 1 : 0;
         continue;
@@ -310,6 +346,12 @@ std::optional<RecordedPlan> FlightRecording::next() {
       plan.t = number_of(record, "t");
       plan.job = job_of(record, *from);
       plan.job.map.map = map_;
+      if (from->contains("map") && (*from)["map"].contains("seen")) {
+        if (seen_ == nullptr || count_of((*from)["map"], "seen") != seen_->number)
+          refuse("\"map\" names what was seen by a number that is not that of the last \"seen\"");
+        plan.job.map.seen = seen_;
+        plan.job.map.map = seen_->map;
+      }
       plan.searches = searches_of(record);
       plan.status = status_of(record);
       plan.path = path_of(record, "path");

@@ -57,7 +57,8 @@ class FlightRecording {
   std::string pilot_ = "jink";
   std::uint64_t seed_ = 1;
   std::vector<config::SettingText> parameters_;
-  std::shared_ptr<const planner::geometry::StaticMap> map_;  // the header's; each plan shares it
+  std::shared_ptr<const planner::geometry::StaticMap> map_;  // the header's; plans share it
+  std::shared_ptr<const bridge::map::Seen> seen_;            // of the last `seen` record, likewise
   std::size_t without_inputs_ = 0;
   std::size_t unknown_ = 0;
 };

@@ -61,7 +61,7 @@ TEST(AutopilotTelemetry, APositionIsAsOldAsTheAutopilotsClockSays) {
   heard.telemetry.on(heard.now, LocalPosition{10'000, {1, 2, 3}, {}});
   EXPECT_EQ(heard.state().motion.delay(), 0.0);
   heard.now += 0.02;
-  heard.telemetry.on(Attitude{10'720, 0.0});
+  heard.telemetry.on(10.0, Attitude{10'720, 0.0});
   heard.telemetry.on(heard.now, LocalPosition{10'020, {1, 2, 3}, {}});
   EXPECT_NEAR(heard.state().motion.delay(), 0.7, 1e-9);
   EXPECT_EQ(heard.state().motion.received, heard.now);

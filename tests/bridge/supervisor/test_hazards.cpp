@@ -55,6 +55,7 @@ const std::vector<Case>& cases() {
       {"the vehicle cannot follow its setpoints", [](Calm& c) { c.flight.cannot_follow = true; }},
       {"the obstacle tracks are stale", [](Calm& c) { c.flight.newest_tracks = kNow - 1.1; }},
       {"a writer of obstacle tracks has fallen silent", [](Calm& c) { c.flight.lost_writers = 1; }},
+      {"the clouds of points are stale", [](Calm& c) { c.flight.blind = true; }},
       {"setpoints cannot be sent", [](Calm& c) { c.flight.unsent_for = 0.21; }},
       {"the planner is late", [](Calm& c) { c.flight.newest_plan = kNow - 0.31; }},
   };

@@ -32,6 +32,7 @@ config::Mission mission_of(const Happening& what, const Cell& cell) {
   m.arrival = cell.phase == Phase::kHandover ? config::Arrival::kHold : config::Arrival::kLand;
   m.geofence = {{-6, -6, 0}, {18, 6, 8}};
   m.time_limit = 60.0;
+  if (what.sees) m.cloud.emplace().all_round = true;
   if (!what.time_limit) return m;
   m.time_limit = cell.moment + kLeast;
   if (cell.phase == Phase::kFlying) m.time_limit += kClimb;
@@ -111,6 +112,16 @@ Flight::Flight(const Happening& what, const Cell& cell)
   start_companion();
 }
 
+// Ten times a second, farther than it is believed.
+bool Clouds::poll(bridge::map::Cloud& cloud) {
+  if (silent || now_ < next_) return false;
+  next_ = now_ + 0.1;
+  cloud = {};
+  cloud.received = now_;
+  cloud.points = {{30.0F, 0.0F, 0.0F}};
+  return true;
+}
+
 Flight::~Flight() = default;
 
 void Flight::start_companion() {
@@ -118,7 +129,7 @@ void Flight::start_companion() {
   planner_ = std::make_unique<bridge::testing::SmallPlanner>(kPlanTakes);
   companion_ = std::make_unique<bridge::companion::Companion>(
       mission_, settings_,
-      bridge::companion::CompanionParts{wire_, sources_, *planner_, {observer_.get()}, nullptr, nullptr});
+      bridge::companion::CompanionParts{wire_, sources_, *planner_, {observer_.get()}, nullptr, nullptr, &clouds_});
 }
 
 void Flight::kill(std::optional<double> pause) {
@@ -160,6 +171,7 @@ void Flight::step() {
   watch();
   const world::VehicleTruth truth{autopilot_.true_motion().position, autopilot_.true_motion().velocity};
   for (const auto& writer : writers_) writer->tracks.advance(now(), truth);
+  clouds_.advance(now());
   if (steps_ % kStepsPerTurn == 0) turn();
   autopilot_.step();
   ++steps_;

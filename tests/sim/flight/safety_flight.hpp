@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bridge/companion/companion.hpp"
+#include "bridge/map/clouds.hpp"
 #include "bridge/tracking/track_sources.hpp"
 #include "sim/faults/fault_timeline.hpp"
 #include "sim/flight/virtual_transport.hpp"
@@ -39,6 +40,7 @@ struct Happening {
   bool falls = false;                   ///< the motors stop in the air
   bool of_pilot = false;                ///< a pilot does it, and whatever comes of it
   bool time_limit = false;              ///< it is the mission's time limit that passes
+  bool sees = false;                    ///< the mission has a `cloud`
   bool takes_two = false;               ///< its hazard is one where there are two writers
   std::optional<int> loss_action = {};  ///< the autopilot's COM_OBL_RC_ACT; none: its default
 };
@@ -68,6 +70,20 @@ class Writer final : public bridge::tracking::TrackSource {
   std::uint64_t identity_;
 };
 
+/// A lidar in empty air.
+class Clouds final : public bridge::map::CloudSource {
+ public:
+  void advance(double now) { now_ = now; }
+  bool poll(bridge::map::Cloud& cloud) override;
+  [[nodiscard]] bridge::map::CloudSourceStatus status() const override { return {}; }
+
+  bool silent = false;
+
+ private:
+  double now_ = 0.0;
+  double next_ = 0.0;
+};
+
 /// Not thread-safe.
 class Flight {
  public:
@@ -85,6 +101,7 @@ class Flight {
   Link& link() { return wire_; }
   bridge::testing::SmallPlanner& planner() { return *planner_; }
   std::vector<std::unique_ptr<Writer>>& writers() { return writers_; }
+  Clouds& clouds() { return clouds_; }
   [[nodiscard]] double now() const { return autopilot_.time(); }
   void interrupt() { companion_->interrupt(now()); }
   void pilot(vehicle::FlightMode mode);
@@ -147,6 +164,7 @@ class Flight {
   VirtualLink virtual_link_;
   Link wire_;
   std::vector<std::unique_ptr<Writer>> writers_;
+  Clouds clouds_;
   bridge::tracking::TrackSources sources_;
   std::unique_ptr<Observer> observer_;
   std::unique_ptr<bridge::testing::SmallPlanner> planner_;

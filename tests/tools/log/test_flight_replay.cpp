@@ -102,6 +102,32 @@ TEST(FlightReplay, AFlightByAMapDecidesTheSame) {
   EXPECT_FALSE(compare(without).differences.empty());
 }
 
+// What was seen is in the log by what changed of it.
+TEST(FlightReplay, AFlightThatSeesForItselfDecidesTheSame) {
+  const support::Folder folder;
+  auto scenario = config::load_scenario(config::config_folder() / "scenarios" / "crossing.yaml");
+  scenario.sensing.scan = config::depth_camera();
+  scenario.map = {{config::BoxShape{{1, 5, 3}}, config::LinearMotion{{10, 1, 1.5}}, {0.4, 0, 0}}};
+  const auto log = fly(folder, scenario, 2);
+  for (const int threads : {1, 2}) {
+    const FlightComparison comparison = compare(log, threads);
+    EXPECT_GT(comparison.plans, 20U);
+    EXPECT_TRUE(comparison.differences.empty());
+  }
+  FlightRecording recording(log);
+  std::size_t most = 0;
+  while (const auto plan = recording.next())
+    if (plan->job.map.seen != nullptr) most = std::max(most, plan->job.map.map->tracks().size());
+  EXPECT_GT(most, 1U);
+  EXPECT_EQ(recording.unknown(), 0U);
+  // Each number is that of the record before.
+  std::string text = support::read(log);
+  const std::size_t record = text.find("{\"type\":\"seen\"", text.find("{\"type\":\"seen\"") + 1);
+  ASSERT_NE(record, std::string::npos);
+  text.erase(record, text.find('\n', record) + 1 - record);
+  EXPECT_THROW((void)compare(folder.write("without.jsonl", text)), std::runtime_error);
+}
+
 TEST(FlightReplay, OtherParametersDecideOtherwise) {
   const support::Folder folder;
   const auto log = fly(folder, "crossing", 2);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Worlds that nobody was told of: what stands is found by a depth camera or a lidar.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "sim/flight/closed_loop.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/worlds/way_through.hpp"
+
+namespace jink::worlds {
+namespace {
+
+config::Scenario unseen(const std::string& sensing, const std::string& more) {
+  const support::Folder folder;
+  return config::load_scenario(folder.write("s.yaml",
+                                            "format: jink-scenario/1\n"
+                                            "name: unseen\n"
+                                            "start: [0, 0, 1.5]\n"
+                                            "target: [20, 0, 1.5]\n"
+                                            "vehicle: ardrone2\n"
+                                            "world: {min: [-2, -12, 0.3], max: [24, 12, 4]}\n"
+                                            "estimate: none\n"
+                                            "time_limit: 90\n"
+                                            "sensing: {" +
+                                                sensing + "}\n" + more));
+}
+
+const std::string kWallWithADoor =
+    "obstacles: []\n"
+    "map:\n"
+    "- {box: [0.2, 15, 6], position: [10, -4.5, 3]}\n"
+    "- {box: [0.2, 7.2, 6], position: [10, 8.4, 3]}\n";
+
+/// Told of a map, where `blind` does not leave that out.
+sim::flight::ClosedLoopResult flown_with(const config::Scenario& scenario, int threads, std::size_t& most_boxes,
+                                         bool blind = false) {
+  /// How much was seen.
+  struct Boxes final : bridge::companion::FlightObserver {
+    std::size_t most = 0;
+    void on_plan(double, const bridge::companion::PlanResult& result) override {
+      if (result.job.map.seen != nullptr) most = std::max(most, result.job.map.seen->boxes.size());
+    }
+  } boxes;
+  /// Does not look.
+  class Blind final : public bridge::companion::PlannerTask {
+   public:
+    Blind(const bridge::companion::PlannerTaskSettings& task, double late) : own_(task, late) {}
+    void start(bridge::companion::PlanJob job) override {
+      job.map = {};
+      own_.start(std::move(job));
+    }
+    [[nodiscard]] bool busy() const override { return own_.busy(); }
+    [[nodiscard]] double latency() const override { return own_.latency(); }
+    [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override { return own_.poll(now); }
+
+   private:
+    bridge::companion::VirtualPlanner own_;
+  };
+  sim::flight::ClosedLoopOptions options;
+  options.threads = threads;
+  options.flight_observers = {&boxes};
+  if (blind)
+    options.planner = [](const auto& settings, double latency) { return std::make_unique<Blind>(settings, latency); };
+  auto result = sim::flight::fly_closed_loop(scenario, config::Settings(), options);
+  most_boxes = boxes.most;
+  return result;
+}
+
+// The same bits at any number of threads; whoever does not look hits the wall.
+TEST(SeenWorlds, AWallWithADoorIsFoundByACamera) {
+  const config::Scenario scenario = unseen("scan: camera", kWallWithADoor);
+  std::size_t boxes = 0;
+  const auto result = flown_with(scenario, 1, boxes);
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+  EXPECT_LT(result.min_clearance, 1.0) << "by the door";
+  EXPECT_GT(boxes, 1U);
+  EXPECT_LT(boxes, 100U) << "a wall is few boxes";
+  const auto again = flown_with(scenario, 3, boxes);
+  EXPECT_EQ(again.min_clearance, result.min_clearance);
+  EXPECT_EQ(again.flight.path_length, result.flight.path_length);
+  const auto blind = flown_with(scenario, 1, boxes, true);
+  EXPECT_EQ(blind.flight.outcome, bridge::supervisor::Outcome::kCollision) << blind.flight.reason;
+}
+
+TEST(SeenWorlds, AWallWithADoorIsFoundByALidar) {
+  expect_flown_through(unseen("scan: lidar", kWallWithADoor));
+}
+
+}  // namespace
+}  // namespace jink::worlds
