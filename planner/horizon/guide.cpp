@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <unordered_map>
 
 #include "planner/geometry/static_map.hpp"
@@ -31,6 +32,8 @@ constexpr double kAhead = 5.0;           // m, along the way, that a vehicle may
 constexpr double kSlowDownAhead = 4.0;   // m, of a narrow place
 constexpr double kSample = 0.25;         // m, along a way
 constexpr double kSlowestShare = 0.3;    // of the cruise speed, in the narrowest place
+constexpr int kSides = 8;                // directions on the level, in which there may be more room
+constexpr double kAside = 1.3;           // times what is lacking, so far that way
 constexpr int kHalvings = 6;             // of a leg, to the farthest place in sight
 constexpr int kMissed = 8;               // places out of sight, after which none farther is looked at
 
@@ -214,6 +217,21 @@ bool Guide::pass(const Vec3& position) {
   return least <= kStrayed;
 }
 
+// How far what stands is from there, m, or from a place beside it where that is more: a way may pass near something
+// without need.
+double Guide::room_at(const Vec3& place, double enough, const base::Box& volume) const {
+  const double there = standing_.distance(place, enough);
+  double most = there;
+  for (int k = 0; k < kSides && most < enough; ++k) {
+    const double angle = k * 2.0 * std::numbers::pi / kSides;
+    for (const Vec3& aside : {Vec3(std::cos(angle), std::sin(angle), 0.0), Vec3(0.0, 0.0, k % 2 == 0 ? 1.0 : -1.0)}) {
+      const Vec3 beside = place + kAside * (enough - there) * aside;
+      if (volume.contains(beside)) most = std::max(most, standing_.distance(beside, enough));
+    }
+  }
+  return most;
+}
+
 void Guide::slow_down(PathRequest& request) {
   const double radius = request.vehicle.radius;
   const double enough = radius + request.margin + kRoom;
@@ -223,7 +241,8 @@ void Guide::slow_down(PathRequest& request) {
     const double length = (way_[i] - way_[i - 1]).norm();
     for (double at = 0.0; at <= length && looked + at < kSlowDownAhead; at += kSample) {
       const Vec3 place = way_[i - 1] + at / std::max(length, kSample) * (way_[i] - way_[i - 1]);
-      narrowest = standing_.distance(place, narrowest);
+      if (standing_.distance(place, narrowest) < narrowest)
+        narrowest = std::min(narrowest, room_at(place, enough, request.volume));
     }
     looked += length;
   }

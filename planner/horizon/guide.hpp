@@ -56,6 +56,7 @@ class Guide {
   [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const;
   [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
   bool pass(const Vec3& position);
+  [[nodiscard]] double room_at(const Vec3& place, double enough, const base::Box& volume) const;
   void slow_down(PathRequest& request);
   std::size_t lead_ahead(PathRequest& request) const;
 

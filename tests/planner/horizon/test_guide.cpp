@@ -182,6 +182,13 @@ TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
   EXPECT_EQ(request.margin_beside_standing(), kKept);
   EXPECT_TRUE(guide.standing().empty());
   EXPECT_EQ(request.vehicle.cruise_speed, 3.0);
+  // Nor beside a wall's end, however near the way passes: there is room on the other side.
+  const std::vector<base::Track> end = numbered({box({10, -10, 4}, {0.2, 20.6, 12})});
+  request = guide_request(end, {8, 0.3, 2});
+  guide = Guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  ASSERT_FALSE(guide.way().empty());
+  EXPECT_EQ(request.margin_beside_standing(), kKept);
   // Who does not know where the door is but to a decimetre or two does not go through.
   std::vector<base::Track> blurred = tracks;
   for (base::Track& track : blurred) track.position_sigma = 0.3;
