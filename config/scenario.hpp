@@ -115,7 +115,7 @@ struct Sensing {
   double velocity_noise = 0.0;              ///< standard deviation per axis
   double dropout = 0.0;                     ///< probability that a track is missing from a message
   SensedFrom sensed_from = SensedFrom::kWorld;
-  std::optional<Scan> scan;  ///< of what stands; none: the map is known
+  std::optional<Scan> scan{};  ///< of what stands; none: the map is known
   bool operator==(const Sensing&) const = default;
 };
 

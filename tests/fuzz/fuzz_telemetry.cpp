@@ -71,6 +71,7 @@ class Companion {
     }
   }
   void on(const jink::bridge::mavlink::CurrentMode& message) { telemetry_.on(clock_.now(), message); }
+  void on(const jink::bridge::mavlink::Attitude& message) { telemetry_.on(clock_.now(), message); }
   void on(const jink::bridge::mavlink::Ping& message) { telemetry_.on(clock_.now(), message); }
   void on(const AdsbReport& message) {
     report_ = message;
