@@ -26,6 +26,7 @@ constexpr double kSearchAgain = 2.0;     // s, after a search that found none
 constexpr double kNarrower = 0.05;       // m, by which a way may get narrower until another is looked for
 constexpr double kCutOff = 0.3;          // m, of the way, that need not be in sight
 constexpr double kRoom = 0.1;            // m, beside the middle of a narrow place, for the vehicle to pass it
+constexpr double kOutOfTheWay = 50.0;    // m, farther away than the target, what stands does not matter
 constexpr double kStrayed = 2.5;         // m, from the way, where it is looked for anew
 constexpr double kTied = 1e-9;           // m: of two legs that are as near the later one counts
 constexpr double kAhead = 5.0;           // m, along the way, that a vehicle may have gone since
@@ -104,13 +105,17 @@ void Guide::notice(const PathRequest& request, double now, const MapPlace& map) 
   }
 }
 
+// What is far off stands in no way, however much of it there is.
 // What is out of sight, beyond all that is seen now, is where it was; what would be seen and is not, is gone.
 void Guide::watch(const PathRequest& request, double now) {
   std::unordered_map<std::uint64_t, std::size_t> known;
   for (std::size_t i = 0; i < seen_.size(); ++i) known[seen_[i].track.id] = i;
   double sight = 0.0;
+  const double far = (request.target - request.position).norm() + kOutOfTheWay;
   for (const base::Track& track : request.tracks) {
-    sight = std::max(sight, (track.position - request.position).norm());
+    const double distance = (track.position - request.position).norm();
+    sight = std::max(sight, distance);
+    if (distance - track.radius > far) continue;
     const auto found = known.find(track.id);
     if (found == known.end()) {
       seen_.push_back({track, track.position, now, now});

@@ -255,6 +255,19 @@ double settled_after(const std::function<void(double now, base::Track&)>& change
   return base::kInfinity;
 }
 
+TEST(Guide, DoesNotLookAtWhatIsFarOff) {
+  std::vector<base::Track> tracks = numbered(wall(10, 0.0, 1.3));
+  tracks.push_back(box({2000, 0, 2}, {1, 1, 1}));
+  tracks.back().id = 9;
+  Guide guide({}, Guide::Knowledge::kSensed);
+  for (int n = 0; n < 100; ++n) {
+    PathRequest request = guide_request(tracks, {8, 0.3, 2});
+    guide.lead(request, 0.05 * n);
+  }
+  EXPECT_EQ(std::vector<std::uint64_t>(guide.standing().begin(), guide.standing().end()),
+            (std::vector<std::uint64_t>{1, 2}));
+}
+
 TEST(Guide, TellsWhatStandsFromWhatMovesTrackByTrack) {
   const double exactly = settled_after([](double, base::Track&) {});
   EXPECT_LT(exactly, 4.0) << "a second, and the search";
