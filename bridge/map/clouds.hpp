@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where clouds of points come from. Two implementations: bridge/dds/clouds and the virtual-time scan of
-// sim/flight/virtual_scan.
+// sim/flight/virtual_clouds.
 #pragma once
 
 #include <Eigen/Core>

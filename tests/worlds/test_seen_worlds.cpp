@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 
 #include "sim/flight/closed_loop.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -47,26 +44,10 @@ sim::flight::ClosedLoopResult flown_with(const config::Scenario& scenario, int t
       if (result.job.map.seen != nullptr) most = std::max(most, result.job.map.seen->boxes.size());
     }
   } boxes;
-  /// Does not look.
-  class Blind final : public bridge::companion::PlannerTask {
-   public:
-    Blind(const bridge::companion::PlannerTaskSettings& task, double late) : own_(task, late) {}
-    void start(bridge::companion::PlanJob job) override {
-      job.map = {};
-      own_.start(std::move(job));
-    }
-    [[nodiscard]] bool busy() const override { return own_.busy(); }
-    [[nodiscard]] double latency() const override { return own_.latency(); }
-    [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override { return own_.poll(now); }
-
-   private:
-    bridge::companion::VirtualPlanner own_;
-  };
   sim::flight::ClosedLoopOptions options;
   options.threads = threads;
   options.flight_observers = {&boxes};
-  if (blind)
-    options.planner = [](const auto& settings, double latency) { return std::make_unique<Blind>(settings, latency); };
+  if (blind) options.planner = blind_planner;
   auto result = sim::flight::fly_closed_loop(scenario, config::Settings(), options);
   most_boxes = boxes.most;
   return result;

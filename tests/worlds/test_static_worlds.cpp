@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "config/scenario.hpp"
@@ -54,24 +51,7 @@ TEST(StaticWorlds, WhoIsNotToldOfTheHouseHitsIt) {
   config::Scenario scenario = yard(kHouse);
   sim::flight::ClosedLoopOptions options;
   options.threads = 1;
-  options.planner = [](const bridge::companion::PlannerTaskSettings& settings, double latency) {
-    /// Plans as if there were no map.
-    class Blind final : public bridge::companion::PlannerTask {
-     public:
-      Blind(const bridge::companion::PlannerTaskSettings& task, double late) : own_(task, late) {}
-      void start(bridge::companion::PlanJob job) override {
-        job.map = {};
-        own_.start(std::move(job));
-      }
-      [[nodiscard]] bool busy() const override { return own_.busy(); }
-      [[nodiscard]] double latency() const override { return own_.latency(); }
-      [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override { return own_.poll(now); }
-
-     private:
-      bridge::companion::VirtualPlanner own_;
-    };
-    return std::make_unique<Blind>(settings, latency);
-  };
+  options.planner = blind_planner;
   const auto result = sim::flight::fly_closed_loop(scenario, config::Settings(), options);
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kCollision);
   EXPECT_TRUE(result.flight.reason.starts_with("hit map solid 1")) << result.flight.reason;

@@ -6,7 +6,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
 
+#include "bridge/companion/planner_task.hpp"
 #include "config/scenario.hpp"
 #include "config/settings.hpp"
 #include "planner/base/worker_pool.hpp"
@@ -30,6 +34,26 @@ inline sim::flight::ClosedLoopResult expect_flown_through(const config::Scenario
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
   return result;
+}
+
+/// jink's planner, as if there were no map: who does not look. For ClosedLoopOptions::planner.
+inline std::unique_ptr<bridge::companion::PlannerTask> blind_planner(
+    const bridge::companion::PlannerTaskSettings& settings, double latency) {
+  class Blind final : public bridge::companion::PlannerTask {
+   public:
+    Blind(const bridge::companion::PlannerTaskSettings& task, double late) : own_(task, late) {}
+    void start(bridge::companion::PlanJob job) override {
+      job.map = {};
+      own_.start(std::move(job));
+    }
+    [[nodiscard]] bool busy() const override { return own_.busy(); }
+    [[nodiscard]] double latency() const override { return own_.latency(); }
+    [[nodiscard]] std::optional<bridge::companion::PlanResult> poll(double now) override { return own_.poll(now); }
+
+   private:
+    bridge::companion::VirtualPlanner own_;
+  };
+  return std::make_unique<Blind>(settings, latency);
 }
 
 /// Plans as `jink plan` does. The plan arrives, and is as free, m, by the judge's measure, which shares nothing with
