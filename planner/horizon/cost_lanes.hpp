@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "planner/base/types.hpp"
 #include "planner/horizon/lanes.hpp"
@@ -59,19 +61,35 @@ struct CostLanes {
       }
       travel.settle();
     }
+    // What stands is looked for once.
+    constexpr std::size_t kMostStanding = 256;
+    std::array<std::uint32_t, kMostStanding> standing;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+    const std::span<const base::Box> boxes = obstacles.standing_boxes();
+    std::size_t found = 0, looked = 0;
+    for (; looked < boxes.size() && found < kMostStanding; ++looked) {
+      if (bounds.meets(boxes[looked])) standing[found++] = static_cast<std::uint32_t>(looked);
+    }
     for (std::size_t j = 0; j < stretch.count; ++j) {
       const int step = before + static_cast<int>(j) + 1;
       const double weight = scene.step / (0.5 + step * scene.step);  // what is near in time counts more
+      const PlainBox here = stretch.bounds_of(j);
       for (const NearbyObstacle& obstacle : obstacles.during(step)) {
         if (bounds.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;
-        if (obstacle.solid >= 0) {
-          const NearbySolid& solid = obstacles.solid(obstacle);
-          if (stretch.may_meet(obstacle, solid, bounds))
-            clearance.add_solid(obstacle, solid, stretch.places[j], stretch.places[j + 1], weight);
-        } else if (stretch.may_meet(obstacle, j)) {
-          clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], weight);
-        }
+        if (obstacle.solid < 0 || here.meets(obstacles.solid(obstacle).keep_out)) keep_away(obstacle, j, weight);
       }
+      for (std::size_t k = 0; k < found + boxes.size() - looked; ++k) {
+        const std::size_t i = k < found ? standing[k] : looked + k - found;
+        if (here.meets(boxes[i])) keep_away(obstacles.standing(i), j, weight);
+      }
+    }
+  }
+
+  /// From an obstacle in step j of the stretch.
+  [[gnu::always_inline]] void keep_away(const NearbyObstacle& obstacle, std::size_t j, double weight) {
+    if (obstacle.solid >= 0) {
+      clearance.add_solid(obstacle, obstacles.solid(obstacle), stretch.places[j], stretch.places[j + 1], weight);
+    } else if (stretch.may_meet(obstacle, j)) {
+      clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], weight);
     }
   }
 

@@ -43,6 +43,13 @@ struct PointLanes {
     for (std::size_t i = 0; i < kLanes; ++i) y[i] = p.y[i];
     for (std::size_t i = 0; i < kLanes; ++i) z[i] = p.z[i];
   }
+  /// Lanes of more, from `first` on.
+  template <std::size_t kMore>
+  [[gnu::always_inline]] void copy(const PointLanes<kMore>& p, std::size_t first) {
+    for (std::size_t i = 0; i < kLanes; ++i) x[i] = p.x[first + i];
+    for (std::size_t i = 0; i < kLanes; ++i) y[i] = p.y[first + i];
+    for (std::size_t i = 0; i < kLanes; ++i) z[i] = p.z[first + i];
+  }
   /// The point of lane i < kLanes.
   [[nodiscard]] Vec3 lane(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
@@ -101,6 +108,11 @@ struct PlainBox {
     const double y = outside(min_y, max_y, p.y());
     const double z = outside(min_z, max_z, p.z());
     return x * x + y * y + z * z;
+  }
+  /// Whether it has a place in common with another box. True where a number is not one.
+  [[gnu::always_inline]] [[nodiscard]] bool meets(const base::Box& box) const {
+    return !(min_x > box.max.x() || max_x < box.min.x() || min_y > box.max.y() || max_y < box.min.y() ||
+             min_z > box.max.z() || max_z < box.min.z());
   }
   /// False where a number is not one.
   [[gnu::always_inline]] [[nodiscard]] bool inside(const base::Box& box) const {

@@ -170,28 +170,33 @@ struct ClearanceLanes {
     }
   }
 
-  /// The same for a solid, at some places of the step: between two of them, in a step of a metre, the distance from an
-  /// edge that is kept 0.65 m away is less by 0.01 m.
+  /// The same for a solid, for those lanes alone that may come near: from halfway a distance changes by no more than
+  /// the place does.
   [[gnu::always_inline]] void add_solid(const NearbyObstacle& obstacle, const NearbySolid& solid,
                                         const PointLanes<kLanes>& from, const PointLanes<kLanes>& to, double weight) {
-    constexpr std::size_t kPlaces = 4;
-    PointLanes<kLanes> a, b, place;
-    Lanes<kLanes> least, distance;
+    constexpr double kRounding = 1e-6;  // m, far above rounding
+    constexpr std::size_t kPart = kLanes < 4 ? kLanes : 4;
+    PointLanes<kLanes> a, b;
+    Lanes<kLanes> half, least;
     solid.from.to_own(from, a);
     solid.to.to_own(to, b);
-    for (std::size_t i = 0; i < kLanes; ++i) least[i] = base::kInfinity;
-    for (std::size_t n = 0; n < kPlaces; ++n) {
-      const double s = (0.5 + static_cast<double>(n)) / kPlaces;
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        place.x[i] = a.x[i] + s * (b.x[i] - a.x[i]);
-        place.y[i] = a.y[i] + s * (b.y[i] - a.y[i]);
-        place.z[i] = a.z[i] + s * (b.z[i] - a.z[i]);
-      }
-      solid.from.distances(place, distance);
-      for (std::size_t i = 0; i < kLanes; ++i) least[i] = distance[i] < least[i] ? distance[i] : least[i];
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double x = 0.5 * (b.x[i] - a.x[i]);
+      const double y = 0.5 * (b.y[i] - a.y[i]);
+      const double z = 0.5 * (b.z[i] - a.z[i]);
+      a.x[i] += x;
+      a.y[i] += y;
+      a.z[i] += z;
+      half[i] = std::sqrt(x * x + y * y + z * z);
     }
-    const Weights weights(obstacle, weight);
-    for (std::size_t i = 0; i < kLanes; ++i) weights.add(solid.radius + least[i], dip[i], violation[i]);
+    solid.from.distances(a, least);
+    for (std::size_t i = 0; i < kLanes; ++i) least[i] -= half[i];
+    const double kept = obstacle.soft - solid.radius + kRounding;
+    for (std::size_t first = 0; first < kLanes; first += kPart) {
+      Lanes<kPart> part;
+      for (std::size_t i = 0; i < kPart; ++i) part[i] = least[first + i];
+      if (smallest(part) < kept) add_near<kPart>(obstacle, solid, from, to, first, weight);
+    }
   }
 
  private:
@@ -215,6 +220,24 @@ struct ClearanceLanes {
       violations += weight * (deep > 0.0 ? deep : 0.0);
     }
   };
+
+  /// Some lanes, from `first` on, of add_solid()'s: at some places of the step, between two of which, in a step of a
+  /// metre, the distance from an edge that is kept 0.65 m away is less by 0.01 m.
+  template <std::size_t kPart>
+  [[gnu::always_inline]] void add_near(const NearbyObstacle& obstacle, const NearbySolid& solid,
+                                       const PointLanes<kLanes>& from, const PointLanes<kLanes>& to, std::size_t first,
+                                       double weight) {
+    constexpr std::size_t kPlaces = 4;
+    PointLanes<kPart> a, b;
+    Lanes<kPart> least;
+    a.copy(from, first);
+    b.copy(to, first);
+    solid.from.to_own(a, a);
+    solid.to.to_own(b, b);
+    solid.from.least_distances<kPlaces>(a, b, least);
+    const Weights weights(obstacle, weight);
+    for (std::size_t i = 0; i < kPart; ++i) weights.add(solid.radius + least[i], dip[first + i], violation[first + i]);
+  }
 };
 
 }  // namespace jink::planner::horizon

@@ -94,37 +94,33 @@ class PathMotion {
   double fastest_;
 };
 
-/// The same of one that stands. That it is where it is said to be is all that may be wrong.
-class NoMotion {
- public:
-  explicit NoMotion(const base::Track& track) : track_(track) {}
-
-  [[nodiscard]] const Vec3& position(double /*t*/) const { return track_.position; }
-  [[nodiscard]] static double fastest(double /*time*/) { return 0.0; }
-  [[nodiscard]] double radius() const { return track_.radius; }
-  [[nodiscard]] static double hard(const Clearance& clearance) { return clearance.hard_beside_standing; }
-  [[nodiscard]] const base::Body& body() const { return track_.body; }
-  [[nodiscard]] static double until() { return base::kInfinity; }
-  [[nodiscard]] static double bend(double /*begin*/, double /*end*/) { return 0.0; }
-  [[nodiscard]] static double most_bend(double /*step*/) { return 0.0; }
-  [[nodiscard]] double uncertainty(const Clearance& clearance, double /*t*/) const {
-    return std::min(clearance.limit, clearance.sigma_factor * track_.position_sigma);
+/// A solid's box, and all that is within `kept`, m, of its faces.
+base::Box box_around(const PlacedSolid& solid, const Vec3& center, double kept) {
+  base::Box box;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    box.min[axis] = center[axis] - solid.extent(-Vec3::Unit(axis)) - kept;
+    box.max[axis] = center[axis] + solid.extent(Vec3::Unit(axis)) + kept;
   }
+  return box;
+}
 
- private:
-  const base::Track& track_;
-};
-
-/// The solid of what moves so, during step n.
+/// The solid of what moves so, during step n, to be kept `soft` away from its centre's sphere.
 template <typename Motion>
-NearbySolid solid_during(const Motion& motion, double step, std::size_t n) {
+NearbySolid solid_during(const Motion& motion, double step, std::size_t n, double soft) {
   const base::Body& body = motion.body();
   const double begin = step * static_cast<double>(n);
   const double end = step * static_cast<double>(n + 1);
   const Vec3 from = motion.position(begin);
   const Vec3 to = motion.position(end);
-  const double turned = body.solid->reach() * std::abs(body.yaw_rate) * step;
-  return {{body, from, begin}, {body, to, end}, motion.radius(), (to - from).norm() + turned};
+  NearbySolid solid{{body, from, begin}, {body, to, end}, motion.radius(), {}};
+  const double kept = soft - solid.radius + kSlack;
+  solid.keep_out = united(box_around(solid.from, from, kept), box_around(solid.from, to, kept));
+  if (body.yaw_rate != 0.0) solid.keep_out = {Vec3::Constant(-base::kInfinity), Vec3::Constant(base::kInfinity)};
+  return solid;
+}
+
+PlainBox plain(const base::Box& box) {
+  return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
 }
 
 }  // namespace
@@ -135,6 +131,8 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
   groups_.clear();
   found_.clear();
   solids_.clear();
+  standing_.clear();
+  boxes_.clear();
   step_.clear();
   obstacles_ = 0;
   base::Box everywhere = where.front();
@@ -148,7 +146,7 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
     add(TrackMotion(track, clearance.acceleration_trust), clearance, step, where, everywhere);
   }
   for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, where, everywhere);
-  for (const base::Track& track : standing) add(NoMotion(track), clearance, step, where, everywhere);
+  for (const base::Track& track : standing) add_standing(track, clearance, where, everywhere);
 
   begin_.assign(where.size() + 1, 0);
   for (const std::size_t n : step_) ++begin_[n + 1];
@@ -192,10 +190,8 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.near_squared = obstacle.near * obstacle.near;
       if (distance >= obstacle.near_squared) continue;
       if (motion.body().solid != nullptr) {
-        const NearbySolid solid = solid_during(motion, step, n);
-        const Vec3 centre = 0.5 * (where[n].min + where[n].max);
-        const double reach = 0.5 * (where[n].max - where[n].min).norm() + solid.moved + kSlack;
-        if (solid.from.distance(centre) - reach >= obstacle.soft - solid.radius) continue;
+        const NearbySolid solid = solid_during(motion, step, n, obstacle.soft);
+        if (!plain(where[n]).meets(solid.keep_out)) continue;
         obstacle.solid = static_cast<int>(solids_.size());
         solids_.push_back(solid);
       }
@@ -204,6 +200,29 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
     }
   }
   if (found_.size() > before) ++obstacles_;
+}
+
+// That it is where it is said to be is all that may be wrong.
+void NearbyObstacles::add_standing(const base::Track& track, const Clearance& clearance,
+                                   std::span<const base::Box> where, const base::Box& everywhere) {
+  NearbyObstacle obstacle;
+  obstacle.from = obstacle.to = obstacle.middle = track.position;
+  obstacle.hard = track.radius + clearance.hard_beside_standing;
+  obstacle.soft = obstacle.hard + std::min(clearance.limit, clearance.sigma_factor * track.position_sigma);
+  obstacle.near = obstacle.soft + kSlack;
+  obstacle.near_squared = obstacle.near * obstacle.near;
+  if (squared_distance(track.position, everywhere) >= obstacle.near_squared) return;
+  base::Box box{track.position.array() - obstacle.near, track.position.array() + obstacle.near};
+  const PlacedSolid solid(track.body, track.position, 0.0);
+  if (!solid.is_none()) box = box_around(solid, track.position, obstacle.near - track.radius);
+  if (std::none_of(where.begin(), where.end(), [&](const base::Box& part) { return plain(part).meets(box); })) return;
+  if (!solid.is_none()) {
+    obstacle.solid = static_cast<int>(solids_.size());
+    solids_.push_back({solid, solid, track.radius, box});
+  }
+  standing_.push_back(obstacle);
+  boxes_.push_back(box);
+  ++obstacles_;
 }
 
 }  // namespace jink::planner::horizon

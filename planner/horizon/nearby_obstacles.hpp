@@ -41,7 +41,7 @@ struct NearbySolid {
   PlacedSolid from,     ///< when the step begins
       to;               ///< when the step ends
   double radius = 0.0;  ///< of the sphere that it is in, its margin not counted, m
-  double moved = 0.0;   ///< by any of its places in the step, at most, m
+  base::Box keep_out;   ///< out of which the soft distance is kept throughout the step; of one that turns everywhere
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
@@ -49,17 +49,21 @@ struct NearbySolid {
 class NearbyObstacles {
  public:
   /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
-  /// of the known paths. Within a step they keep their order, tracks first, what stands last. O(tracks + near tracks ·
-  /// steps + points of the known paths), and for each near known path O(steps · log(points)).
+  /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
+  /// the known paths + what stands), and for each near known path O(steps · log(points)).
   void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
              std::span<const base::Track> standing, const Clearance& clearance, double step,
              std::span<const base::Box> where);
 
-  /// The obstacles of one step, 0 <= step < where.size() of the last build(); valid until the next.
+  /// The obstacles of one step but for what stands, 0 <= step < where.size() of the last build(); valid until the next.
   [[nodiscard]] std::span<const NearbyObstacle> during(int step) const {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
   }
+  /// Of each obstacle that stands, out of which its soft distance is kept; valid until the next build().
+  [[nodiscard]] std::span<const base::Box> standing_boxes() const { return boxes_; }
+  /// What stands, in the same order: during any step, the same.
+  [[nodiscard]] const NearbyObstacle& standing(std::size_t i) const { return standing_[i]; }
   /// The solid of an obstacle that has one; valid until the next build().
   [[nodiscard]] const NearbySolid& solid(const NearbyObstacle& obstacle) const {
     return solids_[static_cast<std::size_t>(obstacle.solid)];
@@ -76,9 +80,13 @@ class NearbyObstacles {
   template <typename Motion>
   void add(const Motion& motion, const Clearance& clearance, double step, std::span<const base::Box> where,
            const base::Box& everywhere);
+  void add_standing(const base::Track& track, const Clearance& clearance, std::span<const base::Box> where,
+                    const base::Box& everywhere);
 
   std::vector<Group> groups_;
   std::vector<NearbyObstacle> found_, met_;  // by track, and by step
+  std::vector<NearbyObstacle> standing_;
+  std::vector<base::Box> boxes_;  // of what stands
   std::vector<NearbySolid> solids_;
   std::vector<std::size_t> step_;   // of each found
   std::vector<std::size_t> begin_;  // of each step in met_, and the end

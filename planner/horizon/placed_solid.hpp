@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "planner/base/portable_math.hpp"
 #include "planner/base/solid.hpp"
@@ -65,37 +66,77 @@ class PlacedSolid {
   /// distance() of places in the solid's own axes.
   template <std::size_t kLanes>
   [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
-    solid_->is_hull() ? beyond_slabs(own, result) : beyond_prism(own, result);
+    solid_->is_hull() ? Slabs(*solid_).distances(own, result) : Prism(*solid_).distances(own, result);
+  }
+
+  /// The smallest distance() of some places on each lane's line from `a` to `b`, in the solid's own axes: those in the
+  /// middles of kPlaces equal parts.
+  template <std::size_t kPlaces, std::size_t kLanes>
+  [[gnu::always_inline]] void least_distances(const PointLanes<kLanes>& a, const PointLanes<kLanes>& b,
+                                              Lanes<kLanes>& least) const {
+    solid_->is_hull() ? least_of<kPlaces>(Slabs(*solid_), a, b, least) : least_of<kPlaces>(Prism(*solid_), a, b, least);
   }
 
  private:
   // Without a branch, for loops over places. Beyond the rectangle by `away` on its plane, and by `up` upwards.
-  template <std::size_t kLanes>
-  [[gnu::always_inline]] void beyond_prism(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
-    const Vec3 half = solid_->half();
-    const double corner = solid_->corner();
-    const double rounding = solid_->rounding();
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const double x = std::abs(own.x[i]) - half.x();
-      const double y = std::abs(own.y[i]) - half.y();
-      const double up = std::abs(own.z[i]) - half.z();
-      const double away = outside(x, y) - corner;
-      result[i] = outside(away, up) - rounding;
-    }
-  }
+  struct Prism {
+    double half_x, half_y, half_z, corner, rounding;
 
-  template <std::size_t kLanes>
-  [[gnu::always_inline]] void beyond_slabs(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
-    for (std::size_t i = 0; i < kLanes; ++i) result[i] = -base::kInfinity;
-    for (const base::Solid::Slab& slab : solid_->slabs()) {
-      const Vec3 n = slab.normal;
+    [[gnu::always_inline]] explicit Prism(const base::Solid& solid)
+        : half_x(solid.half().x()),
+          half_y(solid.half().y()),
+          half_z(solid.half().z()),
+          corner(solid.corner()),
+          rounding(solid.rounding()) {}
+
+    template <std::size_t kLanes>
+    [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
       for (std::size_t i = 0; i < kLanes; ++i) {
-        const double along = n.x() * own.x[i] + n.y() * own.y[i] + n.z() * own.z[i];
-        const double above = along - slab.high;
-        const double below = slab.low - along;
-        const double more = above > below ? above : below;
-        result[i] = more > result[i] ? more : result[i];
+        const double x = std::abs(own.x[i]) - half_x;
+        const double y = std::abs(own.y[i]) - half_y;
+        const double up = std::abs(own.z[i]) - half_z;
+        const double away = outside(x, y) - corner;
+        result[i] = outside(away, up) - rounding;
       }
+    }
+  };
+
+  struct Slabs {
+    std::span<const base::Solid::Slab> slabs;
+
+    [[gnu::always_inline]] explicit Slabs(const base::Solid& solid) : slabs(solid.slabs()) {}
+
+    template <std::size_t kLanes>
+    [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
+      for (std::size_t i = 0; i < kLanes; ++i) result[i] = -base::kInfinity;
+      for (const base::Solid::Slab& slab : slabs) {
+        const Vec3 n = slab.normal;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+          const double along = n.x() * own.x[i] + n.y() * own.y[i] + n.z() * own.z[i];
+          const double above = along - slab.high;
+          const double below = slab.low - along;
+          const double more = above > below ? above : below;
+          result[i] = more > result[i] ? more : result[i];
+        }
+      }
+    }
+  };
+
+  template <std::size_t kPlaces, std::size_t kLanes, typename Shape>
+  [[gnu::always_inline]] static void least_of(const Shape& shape, const PointLanes<kLanes>& a,
+                                              const PointLanes<kLanes>& b, Lanes<kLanes>& least) {
+    PointLanes<kLanes> place;
+    Lanes<kLanes> distance;
+    for (std::size_t i = 0; i < kLanes; ++i) least[i] = base::kInfinity;
+    for (std::size_t n = 0; n < kPlaces; ++n) {
+      const double s = (0.5 + static_cast<double>(n)) / kPlaces;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        place.x[i] = a.x[i] + s * (b.x[i] - a.x[i]);
+        place.y[i] = a.y[i] + s * (b.y[i] - a.y[i]);
+        place.z[i] = a.z[i] + s * (b.z[i] - a.z[i]);
+      }
+      shape.distances(place, distance);
+      for (std::size_t i = 0; i < kLanes; ++i) least[i] = distance[i] < least[i] ? distance[i] : least[i];
     }
   }
 

@@ -69,14 +69,20 @@ struct StretchLanes {
     return {smallest(least.x), smallest(least.y), smallest(least.z), largest(most.x), largest(most.y), largest(most.z)};
   }
 
-  /// False only where all places in the stretch's bounds keep the soft distance from a solid in one step: from one
-  /// place to another a distance changes by no more than they are apart.
-  [[gnu::always_inline]] [[nodiscard]] bool may_meet(const NearbyObstacle& obstacle, const NearbySolid& solid,
-                                                     const PlainBox& bounds) const {
-    const Vec3 low(bounds.min_x, bounds.min_y, bounds.min_z);
-    const Vec3 high(bounds.max_x, bounds.max_y, bounds.max_z);
-    const double reach = 0.5 * (high - low).norm() + solid.moved;
-    return solid.from.distance(0.5 * (low + high)) < obstacle.soft - solid.radius + reach;
+  /// Around the places of all lanes in step j.
+  [[gnu::always_inline]] [[nodiscard]] PlainBox bounds_of(std::size_t j) const {
+    const PointLanes<kLanes>& from = places[j];
+    const PointLanes<kLanes>& to = places[j + 1];
+    PointLanes<kLanes> low, high;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      low.x[i] = from.x[i] < to.x[i] ? from.x[i] : to.x[i];
+      low.y[i] = from.y[i] < to.y[i] ? from.y[i] : to.y[i];
+      low.z[i] = from.z[i] < to.z[i] ? from.z[i] : to.z[i];
+      high.x[i] = from.x[i] > to.x[i] ? from.x[i] : to.x[i];
+      high.y[i] = from.y[i] > to.y[i] ? from.y[i] : to.y[i];
+      high.z[i] = from.z[i] > to.z[i] ? from.z[i] : to.z[i];
+    }
+    return {smallest(low.x), smallest(low.y), smallest(low.z), largest(high.x), largest(high.y), largest(high.z)};
   }
 
   /// False only where every lane keeps the soft distance in step j. Relative motion is straight, so during the step

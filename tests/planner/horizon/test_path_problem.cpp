@@ -468,6 +468,14 @@ optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSett
       }
       add_to_cost(distance, track, begin, s, r, cost);
     }
+    for (const base::Track& track : r.standing) {
+      const PlacedSolid solid(track.body, track.position, 0.0);
+      double distance = base::kInfinity;
+      for (int i = 0; i <= kPlaces; ++i)
+        distance = std::min(distance, solid.distance(base::sample(path, begin + s.step * i / kPlaces).position));
+      add_to_cost(distance, r.vehicle.radius + r.margin_beside_standing(),
+                  std::min(s.clearance_limit, s.sigma_factor * track.position_sigma), s.step / (0.5 + begin), cost);
+    }
   }
   return cost;
 }
@@ -479,10 +487,13 @@ TEST(PathProblem, SolidsCostTheirTrueDistances) {
   base::RandomStream random(8);
   int violated = 0;
   for (int round = 0; round < 12; ++round) {
-    const std::vector<base::Track> tracks = random_solids(random);
+    std::vector<base::Track> tracks = random_solids(random);
+    std::vector<base::Track> standing;
+    if (round % 2 == 0) set_apart(std::vector<std::uint64_t>{1, 2, 3, 5, 8, 13, 21, 34, 55, 89}, tracks, standing);
     PathRequest r = request();
     r.velocity = random_vector(random, 2.0);
     r.tracks = tracks;
+    r.standing = standing;
     r.margin = 0.35;
     r.track_acceleration = 0.4;
     r.acceleration_trust = 0.7;
@@ -686,29 +697,47 @@ TEST(PathProblem, CostOfAMotionIsItsEvaluation) {
   }
 }
 
+/// Things beside the way, more than are looked at together, every third of them a sphere.
+std::vector<base::Track> random_standing(base::RandomStream& random) {
+  std::vector<base::Track> standing;
+  for (int i = 0; i < 400; ++i) {
+    base::Track track =
+        sphere({random.uniform(-1.0, 7.0), random.uniform(-3.0, 3.0), random.uniform(0.5, 4.0)}, Vec3::Zero(), 0.2);
+    if (i % 3 > 0) track.body.solid = base::Solid::box(random_vector(random, 0.3).cwiseAbs(), {});
+    if (i % 3 > 0) track.radius = track.body.solid->reach();
+    standing.push_back(track);
+  }
+  return standing;
+}
+
 // To the bit, whatever the lane, the block and what else is in it; and it is the motion that is measured.
 TEST(PathProblem, EvaluatesSeveralSolutionsLikeOne) {
   PathProblem problem{base::HorizonSettings{}};
   base::RandomStream random(9);
-  const std::vector<base::Track> tracks = random_tracks(random);
+  const std::vector<base::Track> spheres = random_tracks(random), solids = random_solids(random),
+                                 many = random_standing(random);
   PathRequest r = request();
-  r.tracks = tracks;
   r.margin = 0.35;
   r.volume = {{-1, -4, 0.5}, {50, 4, 6}};
   r.velocity = {2, 1, 0};
-  problem.prepare(r);
-  for (const std::size_t count : {1U, 3U, 4U, 5U, 8U, 9U, 12U, 13U, 17U, 25U, 48U}) {
-    std::vector<double> all;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::vector<double> x = random_variables(random, problem, i % 2 == 0 ? 1.0 : 0.2);
-      all.insert(all.end(), x.begin(), x.end());
-    }
-    std::vector<optimizer::Cost> costs(count);
-    problem.evaluate(all, costs);
-    for (std::size_t i = 0; i < count; ++i) {
-      const optimizer::Cost alone = evaluate(problem, std::span(all).subspan(18 * i, 18));
-      EXPECT_EQ(costs[i].f, alone.f);
-      EXPECT_EQ(costs[i].violation, alone.violation);
+  for (const auto& [tracks, standing] :
+       {std::pair(&spheres, std::size_t{0}), {&solids, std::size_t{20}}, {&solids, std::size_t{400}}}) {
+    r.tracks = *tracks;
+    r.standing = std::span(many).first(standing);
+    problem.prepare(r);
+    for (const std::size_t count : {1U, 3U, 4U, 5U, 8U, 9U, 12U, 13U, 17U, 25U, 48U}) {
+      std::vector<double> all;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::vector<double> x = random_variables(random, problem, i % 2 == 0 ? 1.0 : 0.2);
+        all.insert(all.end(), x.begin(), x.end());
+      }
+      std::vector<optimizer::Cost> costs(count);
+      problem.evaluate(all, costs);
+      for (std::size_t i = 0; i < count; ++i) {
+        const optimizer::Cost alone = evaluate(problem, std::span(all).subspan(18 * i, 18));
+        EXPECT_EQ(costs[i].f, alone.f);
+        EXPECT_EQ(costs[i].violation, alone.violation);
+      }
     }
   }
 }
