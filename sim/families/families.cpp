@@ -287,13 +287,16 @@ config::Scenario make_world(std::string_view family, std::uint64_t seed) {
 }
 
 std::string_view to_string(Tier tier) {
-  if (tier == Tier::kField) return "field";
-  return tier == Tier::kPerfect ? "perfect" : "realistic";
+  constexpr std::array<std::string_view, 5> kTierNames{"camera", "field", "lidar", "perfect", "realistic"};
+  return kTierNames.at(static_cast<std::size_t>(tier));
 }
 
 void set_tier(config::Scenario& scenario, Tier tier, std::uint64_t seed) {
   config::Sensing sensing;
-  if (tier != Tier::kPerfect) {
+  const bool alone = scenario.vehicles.empty();
+  if (tier == Tier::kCamera && alone) sensing.scan = config::depth_camera();
+  if (tier == Tier::kLidar && alone) sensing.scan = config::lidar();
+  if (tier == Tier::kRealistic || tier == Tier::kField) {
     sensing.range = 12.0;
     sensing.rate = 20.0;
     sensing.delay = 0.1;
@@ -304,7 +307,7 @@ void set_tier(config::Scenario& scenario, Tier tier, std::uint64_t seed) {
   sensing.range = std::min(sensing.range, scenario.sensing.range);
   const bool field = tier == Tier::kField;
   // Where several vehicles share the tracks they are an external tracker's.
-  if (field && scenario.vehicles.empty()) sensing.sensed_from = config::SensedFrom::kVehicle;
+  if (field && alone) sensing.sensed_from = config::SensedFrom::kVehicle;
   scenario.sensing = sensing;
   scenario.estimate = {.px4 = field};
   scenario.wind = {};

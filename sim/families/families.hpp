@@ -83,8 +83,10 @@ inline constexpr double kStraightOverlap = 0.1;
 ///   5 % dropout, 20 Hz, sensed from the vehicle; PX4's estimate; wind of 3 m/s from anywhere, gusts of 1 m/s rms.
 /// - Perfect: true tracks without delay at 20 Hz, the true estimate, no wind.
 /// - Realistic: the field's tracks with the true estimate and no wind.
-enum class Tier { kField, kPerfect, kRealistic };
-/// "field", "perfect", "realistic".
+/// - Camera, lidar: as perfect, but nobody knows the map: config::depth_camera() or config::lidar() is to find it. A
+///   team has neither.
+enum class Tier { kCamera, kField, kLidar, kPerfect, kRealistic };
+/// "camera", "field", "lidar", "perfect", "realistic".
 [[nodiscard]] std::string_view to_string(Tier tier);
 
 /// Replaces the scenario's sensing, estimate and wind by the tier's. A range of the scenario's own that is smaller

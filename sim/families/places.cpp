@@ -25,7 +25,10 @@ bool is_free_walk(const world::World& world, const config::WaypointsMotion& walk
   double at_target = 0.0;
   for (double t = 0.0; t < kBusy; t += kLookEvery) {
     const Vec3 place = world::state_at(walk, t).position;
-    for (const double up : {radius, 0.5 * height, height - radius}) {
+    const double middle = world.clearance({place.x(), place.y(), 0.5 * height}, t, radius);
+    if (middle < kApart) return false;
+    for (const double up : {radius, height - radius}) {
+      if (middle >= kApart + std::abs(up - 0.5 * height)) continue;  // so much at least is left there
       if (world.clearance({place.x(), place.y(), up}, t, radius) < kApart) return false;
     }
     const bool near = (place - target).head<2>().norm() < radius + world.scenario().vehicle.radius + kAtTarget;

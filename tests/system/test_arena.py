@@ -28,7 +28,7 @@ BAD_USAGE = [
     (["--families", "crossing,crossing"], ["--families", "'crossing' is there twice"]),
     (["--families", ""], ["--families", "''"]),
     (["--pilots", "icarus"], ["--pilots", "'icarus'", "jink"]),
-    (["--tiers", "wild"], ["--tiers", "'wild'", "field, perfect, realistic"]),
+    (["--tiers", "wild"], ["--tiers", "'wild'", "camera, field, lidar, perfect, realistic"]),
     (["--runs", "0"], ["--runs", "0", "1 to 1000000"]),
     (["--shard", "3/2"], ["--shard", "'3/2'", "K/N"]),
     (["--shard", "0/2"], ["--shard", "'0/2'"]),

@@ -20,7 +20,7 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr std::uint64_t kSeeds = 50;
+constexpr std::uint64_t kSeeds = 20;
 
 class WorldFamily : public ::testing::TestWithParam<std::string_view> {};
 /// All but the literature's corridors, for which see test_world_corridors.cpp.
@@ -156,7 +156,7 @@ TEST_P(WorldFamily, MotionIsAsDeclared) {
 TEST_P(WorldFamily, ReadsBackFromYamlInEachTier) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) /
                                      ("jink_" + std::string(GetParam()) + "_" + std::to_string(getpid()) + ".yaml");
-  for (const Tier tier : {Tier::kField, Tier::kPerfect, Tier::kRealistic}) {
+  for (const Tier tier : {Tier::kCamera, Tier::kField, Tier::kLidar, Tier::kPerfect, Tier::kRealistic}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       config::Scenario scenario = make_world(GetParam(), seed);
       set_tier(scenario, tier, seed);
@@ -208,9 +208,23 @@ TEST(Tiers, RealisticIsTheIssuesAndKeepsASmallerRange) {
   set_tier(late, Tier::kPerfect);
   EXPECT_EQ(late.sensing, (config::Sensing{7.0, 20.0, 0.0, 0.0, 0.0, 0.0}));
   EXPECT_EQ(late.estimate, config::EstimateErrors{.px4 = false});
+  EXPECT_EQ(to_string(Tier::kCamera), "camera");
   EXPECT_EQ(to_string(Tier::kField), "field");
+  EXPECT_EQ(to_string(Tier::kLidar), "lidar");
   EXPECT_EQ(to_string(Tier::kPerfect), "perfect");
   EXPECT_EQ(to_string(Tier::kRealistic), "realistic");
+}
+
+TEST(Tiers, ACameraOrALidarIsToFindTheMap) {
+  config::Scenario scenario = make_world("office", 1);
+  config::Sensing expected;
+  set_tier(scenario, Tier::kCamera);
+  expected.scan = config::depth_camera();
+  EXPECT_EQ(scenario.sensing, expected);
+  set_tier(scenario, Tier::kLidar);
+  expected.scan = config::lidar();
+  EXPECT_EQ(scenario.sensing, expected);
+  EXPECT_EQ(scenario.estimate, config::EstimateErrors{.px4 = false});
 }
 
 TEST(Tiers, FieldHasPx4sEstimateOnboardSensingAndWindFromAnywhere) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/lab/arena/tiers.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -8,17 +9,23 @@
 namespace jink::tools::lab::arena {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTiers{"field", "perfect", "realistic"};
+using sim::families::Tier;
+
+constexpr std::array kTiers{Tier::kCamera, Tier::kField, Tier::kLidar, Tier::kPerfect, Tier::kRealistic};
 
 }  // namespace
 
 std::span<const std::string_view> tiers() {
-  return kTiers;
+  static const auto kNames = [] {
+    std::array<std::string_view, kTiers.size()> names;
+    std::transform(kTiers.begin(), kTiers.end(), names.begin(), sim::families::to_string);
+    return names;
+  }();
+  return kNames;
 }
 
-sim::families::Tier tier_of(std::string_view name) {
-  for (const auto tier :
-       {sim::families::Tier::kField, sim::families::Tier::kPerfect, sim::families::Tier::kRealistic}) {
+Tier tier_of(std::string_view name) {
+  for (const Tier tier : kTiers) {
     if (name == to_string(tier)) return tier;
   }
   throw std::invalid_argument("there is no tier '" + std::string(name) + "'");

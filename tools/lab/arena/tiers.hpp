@@ -9,7 +9,7 @@
 
 namespace jink::tools::lab::arena {
 
-/// field, perfect, realistic: in this order.
+/// camera, field, lidar, perfect, realistic: in this order.
 [[nodiscard]] std::span<const std::string_view> tiers();
 
 /// Throws std::invalid_argument for an unknown name.

@@ -36,7 +36,7 @@ constexpr const char* kArenaFooter =
 
 struct ArenaOptions {
   cli::CommonOptions common;
-  std::string families = "all", pilots = "jink", tiers = "all";
+  std::string families = "all", pilots = "jink", tiers = "field,perfect,realistic";
   int runs = 20;
   std::string out = "arena";
   bool resume = false;
