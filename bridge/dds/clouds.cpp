@@ -8,13 +8,10 @@
 #include "bridge/dds/payload_io.hpp"
 
 namespace jink::bridge::dds {
-namespace {
 
 std::string cloud_topic(const std::string& name_space) {
   return name_space.empty() ? kCloudTopic : "rt/" + name_space + std::string(kCloudTopic).substr(2);
 }
-
-}  // namespace
 
 class DdsCloudReader::Impl {
  public:

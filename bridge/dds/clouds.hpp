@@ -17,6 +17,9 @@ namespace jink::bridge::dds {
 inline constexpr const char* kCloudTopic = "rt/jink/points";  ///< ROS 2: /jink/points; without a namespace
 inline constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
 
+/// kCloudTopic in a namespace; empty: none.
+[[nodiscard]] std::string cloud_topic(const std::string& name_space);
+
 /// Whose clouds are read, and in which frame.
 struct CloudReaderOptions {
   std::string name_space{};         ///< before the topic: "uav_1" means rt/uav_1/...; empty: none

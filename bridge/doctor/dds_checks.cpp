@@ -14,8 +14,10 @@
 #include <stop_token>
 #include <string>
 
+#include "bridge/cdr/cloud_messages.hpp"
 #include "bridge/cdr/px4_messages.hpp"
 #include "bridge/cdr/track_messages.hpp"
+#include "bridge/dds/clouds.hpp"
 #include "bridge/dds/discovery.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/px4_link.hpp"
@@ -27,6 +29,13 @@ namespace jink::bridge::doctor {
 namespace {
 
 constexpr double kStampTolerance_s = 1.0;
+constexpr const char* kTracksDemanded =
+    "the frame must be 'map' (ENU about the autopilot's local origin, or tracks.origins says where), values finite and "
+    "sane, and both ends built from the same message definition";
+constexpr const char* kPositionDemanded = "both ends must be built from the same message definition";
+constexpr const char* kCloudDemanded =
+    "clouds need points of fields x, y and z (FLOAT32 or FLOAT64) in the frame that the mission mounts (cloud.frame), "
+    "'map' or 'ned', and the sensor's clock must be this machine's (chrony, PTP)";
 // A stamp of less is no system time: PX4 counts from its start where its agent does not synchronise the clocks.
 constexpr double kNoSystemTime_s = 1e9;
 
@@ -41,10 +50,12 @@ using Judge = std::function<Verdict(const dds::Payload&)>;
 /// A topic that the mission reads, and what came on it.
 class Probe {
  public:
-  Probe(dds::DdsParticipant& node, std::string topic, const char* type, Judge judge)
+  /// `demands`: what its messages have to be, where some are faulty.
+  Probe(dds::DdsParticipant& node, std::string topic, const char* type, Judge judge, const char* demands)
       : topic_(std::move(topic)),
         type_(type),
         judge_(std::move(judge)),
+        demands_(demands),
         reader_(node, topic_, type,
                 [this](const dds::Payload& payload, const dds::SampleWriter& writer) { take(payload, writer); }) {}
 
@@ -75,6 +86,7 @@ class Probe {
   [[nodiscard]] std::string mismatch() const { return reader_.mismatch(); }
   [[nodiscard]] const std::string& topic() const { return topic_; }
   [[nodiscard]] const std::string& type() const { return type_; }
+  [[nodiscard]] const char* demands() const { return demands_; }
 
  private:
   void take(const dds::Payload& payload, const dds::SampleWriter& writer) {
@@ -97,6 +109,7 @@ class Probe {
   std::string topic_;
   std::string type_;
   Judge judge_;
+  const char* demands_;
   mutable std::mutex mutex_;  // guards the next block
   Seen seen_;
   std::set<std::uint64_t> heard_;
@@ -127,6 +140,23 @@ std::string number(double value, const char* format = "%.1f") {
   char text[32];
   std::snprintf(text, sizeof text, format, value);
   return text;
+}
+
+/// As the reader of clouds takes them.
+Verdict judge_cloud(const dds::Payload& payload, const std::string& frame) {
+  using map::CloudLimits;
+  const auto cloud = cdr::decode_cloud(payload);
+  if (!cloud) return {0.0, "no cloud of points, or more points than " + std::to_string(CloudLimits::kPoints)};
+  const double age = dds::system_time() - cloud->stamp_unix_s;
+  Verdict verdict{cloud->stamp_unix_s, {}};
+  if (cloud->frame_id != frame && cloud->frame_id != "map" && cloud->frame_id != "ned") {
+    verdict.fault = "frame_id '" + cdr::printable(cloud->frame_id) + "'";
+  } else if (cloud->points.empty()) {
+    verdict.fault = "no point in it";
+  } else if (age > CloudLimits::kOldest || age < -CloudLimits::kAhead) {
+    verdict.fault = "stamp " + number(age, "%.3f") + " s old";
+  }
+  return verdict;
 }
 
 std::string count(std::size_t number_of, const std::string& what) {
@@ -253,8 +283,7 @@ class Inspector {
       return {Check::Level::kFault, probe.topic(),
               finding + ", " + std::to_string(seen.faulty) + " of " + std::to_string(seen.messages) +
                   " messages not usable: " + seen.fault,
-              "the frame must be 'map' (ENU about the autopilot's local origin, or tracks.origins says where), values "
-              "finite and sane, and both ends built from the same message definition"};
+              probe.demands()};
     }
     finding += seen.stamp_age_s ? ", stamps " + number(*seen.stamp_age_s, "%.3f") + " s old"
                                 : std::string(", stamps are not system time");
@@ -349,23 +378,31 @@ void add_alternatives(std::vector<Check>& checks, std::vector<Check> alternative
 std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, const std::stop_token& stop) {
   Inspector inspector(mission);
   std::vector<std::unique_ptr<Probe>> tracks;
+  std::vector<std::unique_ptr<Probe>> clouds;
   std::vector<std::unique_ptr<Probe>> positions;
-  const auto add = [&](auto& probes, const std::string& topic, const char* type, Judge judge) {
-    probes.push_back(std::make_unique<Probe>(inspector.node(), topic, type, std::move(judge)));
+  const auto add = [&](auto& probes, const std::string& topic, const char* type, Judge judge, const char* demands) {
+    probes.push_back(std::make_unique<Probe>(inspector.node(), topic, type, std::move(judge), demands));
   };
   const auto px4_name = [&](const char* name) { return dds::px4_topic(mission.dds_namespace, name); };
   for (const config::TrackTopic topic : config::kTrackTopics) {
     if (!mission.tracks.sources.has(topic)) continue;
     const auto format = static_cast<dds::TrackFormat>(topic);
     const dds::TrackTopicInfo& info = dds::track_topic_info(format);
-    add(tracks, dds::track_topic(format, mission.tracks.name_space), info.type,
+    add(
+        tracks, dds::track_topic(format, mission.tracks.name_space), info.type,
         [&mission, &info, topic](const dds::Payload& payload) {
           return judge_tracks(info.decode(payload), info.ned, mission, topic);
-        });
+        },
+        kTracksDemanded);
+  }
+  if (mission.cloud) {
+    add(
+        clouds, dds::cloud_topic(mission.tracks.name_space), dds::kCloudType,
+        [&mission](const dds::Payload& payload) { return judge_cloud(payload, mission.cloud->frame); }, kCloudDemanded);
   }
   if (mission.state == config::Transport::kDds) {
-    add(positions, px4_name(dds::kLocalPositionTopicV1), dds::kLocalPositionType, judge_position);
-    add(positions, px4_name(dds::kLocalPositionTopic), dds::kLocalPositionType, judge_position);
+    add(positions, px4_name(dds::kLocalPositionTopicV1), dds::kLocalPositionType, judge_position, kPositionDemanded);
+    add(positions, px4_name(dds::kLocalPositionTopic), dds::kLocalPositionType, judge_position, kPositionDemanded);
   }
   std::mutex waiting;
   std::unique_lock lock(waiting);
@@ -374,7 +411,7 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
   inspector.settle();
 
   const bool setpoints = mission.setpoints == config::Transport::kDds;
-  const bool needed = (mission.tracks.required && !tracks.empty()) || !positions.empty() || setpoints;
+  const bool needed = (mission.tracks.required && !tracks.empty()) || !positions.empty() || setpoints || mission.cloud;
   std::vector<Check> checks{inspector.domain_check(needed)};
   const auto levels = [&](const auto& probes) {
     std::vector<Check> found;
@@ -395,6 +432,7 @@ std::vector<Check> inspect_dds(const config::Mission& mission, double seconds, c
         inspector.name_checks(mission.tracks.writers, topic, *tracks[probe++], checks);
     }
   }
+  for (Check& check : levels(clouds)) checks.push_back(std::move(check));
   add_alternatives(checks, levels(positions));
   std::size_t writers = 0;
   for (const auto& probe : positions) writers += probe->seen().writers;

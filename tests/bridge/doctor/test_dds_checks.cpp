@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "bridge/dds/clouds.hpp"
 #include "bridge/dds/discovery.hpp"
 #include "bridge/dds/payload_io.hpp"
 #include "bridge/dds/px4_link.hpp"
@@ -112,6 +113,35 @@ TEST(DdsInspect, NamesTheProgramThatHoldsTheDiscoveryPort) {
   }
   close(thief);
   EXPECT_EQ(dds::discovery_trouble(mission.dds_domain), "");
+}
+
+TEST(DdsInspect, LooksForCloudsWhereTheMissionNeedsThem) {
+  Mission mission = tracks_mission(own_domain());
+  mission.tracks.required = false;
+  mission.cloud.emplace();
+  mission.cloud->frame = "camera_link";
+  EXPECT_EQ(find(inspect_dds(mission, 0.3), dds::kCloudTopic).level, Check::Level::kMissing);
+  dds::DdsParticipant node(mission.dds_domain, "camera");
+  dds::DdsCloudWriter writer(node);
+  const std::vector<Eigen::Vector3f> points{{4.0F, 0.0F, 1.0F}};
+  struct Case {
+    std::vector<Eigen::Vector3f> points;
+    std::string frame;
+    double age = 0.0;
+    std::string finding;
+  };
+  for (const auto& [given, frame, age, finding] :
+       {Case{points, "camera_link", 0.1, "1 writer,"}, Case{points, "odom", 0.1, "frame_id 'odom'"},
+        Case{{}, "camera_link", 0.1, "no point in it"}, Case{points, "camera_link", 2.0, "stamp 2.0"}}) {
+    const Check check =
+        find(inspect(mission, [&, &given = given, &frame = frame,
+                               &age = age] { (void)writer.publish(given, dds::system_time() - age, frame); }),
+             dds::kCloudTopic);
+    EXPECT_TRUE(has(check.finding, finding)) << check.finding;
+    EXPECT_EQ(check.level,
+              frame == "camera_link" && age < 1.0 && !given.empty() ? Check::Level::kOk : Check::Level::kFault);
+    EXPECT_EQ(has(check.remedy, "cloud.frame"), check.level == Check::Level::kFault) << check.remedy;
+  }
 }
 
 TEST(DdsInspect, NamesTheOffsetOfAClock) {
