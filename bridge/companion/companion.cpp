@@ -16,7 +16,10 @@ constexpr double kLow = 0.3;            // m, below min_height: less is noise
 constexpr double kLookAgain = 0.2;      // s, at what a vehicle without plans is to avoid
 constexpr double kLandingHeight = 1.0;  // m above the ground, down to which plans are flown
 constexpr double kSettling = 1.0;       // s, after which a vehicle that sinks is at rest in HOLD
-constexpr double kLookAhead = 1.5;      // s along the path, to where a vehicle with a camera turns
+constexpr double kStays = 2.0;          // s, at one place, after which a vehicle with a camera looks around
+constexpr double kRoundAbout = 4.5;     // s, for which it does: once round
+constexpr double kAside = 10.0;         // m, to where it looks then
+constexpr double kAsideAngle = 1.0;     // rad, to the left of where it looks
 constexpr double kFlat = 0.05;          // m, likewise, between the ground and the local frame
 
 supervisor::SupervisorSettings supervisor_settings(const config::CompanionSettings& s) {
@@ -147,7 +150,7 @@ void Companion::take_tracks(double now) {
 
 void Companion::take_clouds(double now) {
   sight_.take(now, intake_, frame_change_);
-  planning_.see(sight_.seen());
+  planning_.see(sight_.seen(), sight_.column());
   if (mission_.cloud) reporter_.clouds(now, sight_.source_status(), sight_.unplaced(), sight_.counts());
 }
 
@@ -233,9 +236,22 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
     stop_without_planner(now);
   }
   const bool turns = supervisor_.phase() == supervisor::Phase::kFlying;
-  const bool looks_ahead = mission_.cloud && !mission_.cloud->all_round;
-  const Vec3 towards = looks_ahead ? motion_.stream().reference(now + kLookAhead).position : route_.target();
-  motion_.send(now, dt, state, turns ? std::optional(towards) : std::nullopt);
+  if (!turns || sight_.is_stale(now)) goes_on_ = now;
+  motion_.send(now, dt, state, turns ? std::optional(place_to_look_at(now)) : std::nullopt);
+}
+
+// Who sees ahead alone looks where he flies; where he stays, to the target at first, and then all round.
+Vec3 Companion::place_to_look_at(double now) {
+  const vehicle::VehicleState& state = intake_.state();
+  if (!mission_.cloud || mission_.cloud->all_round) return route_.target();
+  const Vec3& position = state.motion.value.position;
+  if (const std::optional<Vec3> place = motion_.place_ahead(now, position)) {
+    goes_on_ = now;
+    return *place;
+  }
+  const double stays = now - goes_on_;
+  if (stays < kStays || stays > kStays + kRoundAbout) return route_.target();
+  return position + kAside * Vec3(std::cos(state.yaw + kAsideAngle), std::sin(state.yaw + kAsideAngle), 0.0);
 }
 
 // Plans to the stop's end take over from the stop, as long as they come; where they do not, it is looked at again.

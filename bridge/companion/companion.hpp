@@ -63,6 +63,7 @@ class Companion {
   [[nodiscard]] std::optional<Goal::Kind> goal_kind(supervisor::Decision::Motion motion) const;
   [[nodiscard]] Goal goal(double now, Goal::Kind kind);
   [[nodiscard]] bool overhead_free(double now);
+  [[nodiscard]] Vec3 place_to_look_at(double now);
   void place_mission();
   void tell_beginning(double now);
 
@@ -78,6 +79,7 @@ class Companion {
   Intake::FrameChange frame_change_;  // in this turn
   Sight sight_;
   MotionControl motion_;
+  double goes_on_ = 0.0;  // s, when the reference last led away from where the vehicle was
   Planning planning_;
   Route route_;
   std::optional<double> last_step_;

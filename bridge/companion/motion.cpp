@@ -14,6 +14,8 @@ constexpr double kLeastShare = 0.25;       // that is asked for
 constexpr double kHelplessShare = 0.3;     // asked for, of what loses its reference for all that
 constexpr double kRecovery = 0.01;         // 1/s, of the share
 constexpr double kYawRate = 1.5;           // rad/s, at which the heading turns to the next waypoint
+constexpr double kLookAhead = 5.0;         // s, along what is followed
+constexpr double kLookStep = 0.25;         // s
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
 constexpr double kTakeoffTolerance = 0.5;  // m
@@ -147,6 +149,14 @@ double MotionControl::heading(double dt, const vehicle::VehicleState& state, con
     yaw_ = wrapped(*yaw_ + std::clamp(wrapped(std::atan2(ahead.y(), ahead.x()) - *yaw_), -most, most));
   }
   return *yaw_;
+}
+
+std::optional<Vec3> MotionControl::place_ahead(double now, const Vec3& position) const {
+  for (double later = kLookStep; stream_.active() && later <= kLookAhead; later += kLookStep) {
+    const Vec3 place = stream_.reference(now + later).position;
+    if ((place - position).head<2>().norm() > kYawDistance) return place;
+  }
+  return std::nullopt;
 }
 
 void MotionControl::observe(double now, const vehicle::VehicleState& state) {

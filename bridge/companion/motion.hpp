@@ -53,6 +53,8 @@ class MotionControl {
   /// Sends a setpoint where one is due. `dt`: since the last step; `towards`: where the vehicle is to look, where it
   /// is to turn at all.
   void send(double now, double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
+  /// The next place that is followed to, as far off on the level as the heading turns to; none: it stays.
+  [[nodiscard]] std::optional<Vec3> place_ahead(double now, const Vec3& position) const;
   /// Learns from where the vehicle is on its reference.
   void observe(double now, const vehicle::VehicleState& state);
   /// The autopilot's estimate jumped by that.

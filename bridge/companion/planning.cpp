@@ -30,8 +30,8 @@ constexpr double kClimbing = 1.0;            // m/s, of a take-off
 constexpr double kCautious = 0.3;            // of the cruise speed, while what moves nearby is unexplained
 constexpr double kSeeing = 0.2;              // s, from what a sensor sees to a map of it
 constexpr double kInView = 0.82;             // cosine of the angle from where the vehicle looks, 35 degrees
-constexpr double kBarelyMoves = 0.5;         // m/s, or m
-constexpr double kSlowest = 0.3;             // m/s, as which a lower speed counts
+constexpr double kBeside = 0.5;              // m, no farther off no direction tells where to look
+constexpr double kSlowest = 0.3;             // m/s, at which a vehicle flies that does not see where to
 
 // The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
 planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& position, const Vec3& velocity) {
@@ -159,19 +159,28 @@ void Planning::look_at_map(const vehicle::VehicleState& state, PlanJob& job) con
   if (mission_.map->tracks().empty()) job.map.sigma = 0.0;
 }
 
-void Planning::keep_in_sight(const vehicle::VehicleState& state, planner::horizon::PathRequest& request) const {
+void Planning::keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahead,
+                             planner::horizon::PathRequest& request) const {
   if (!mission_.cloud) return;
   const double braking = settings_.horizon.braking;
   const double reaction = kSeeing + 1.0 / settings_.companion.replan_rate_hz + settings_.companion.commitment;
   const double room = mission_.cloud->range - request.vehicle.radius - request.margin - map::Occupancy::kCell;
   const double fastest = braking * (std::sqrt(reaction * reaction + 2.0 * std::max(0.0, room) / braking) - reaction);
-  Vec3 ahead = request.velocity;
-  if (ahead.norm() < kBarelyMoves) ahead = request.target - request.position;
   const double aside = std::atan2(ahead.y(), ahead.x()) - state.yaw;
-  const bool blind = !mission_.cloud->all_round && ahead.head<2>().norm() > kBarelyMoves && std::cos(aside) < kInView;
-  request.vehicle.max_speed = std::max(kSlowest, std::min(request.vehicle.max_speed, fastest));
+  const bool blind = !mission_.cloud->all_round && ahead.head<2>().norm() > kBeside && std::cos(aside) < kInView;
+  request.vehicle.max_speed = std::min(request.vehicle.max_speed, std::max(kSlowest, fastest));
   request.vehicle.cruise_speed =
-      std::min(request.vehicle.cruise_speed * (blind ? kCautious : 1.0), request.vehicle.max_speed);
+      std::min({request.vehicle.cruise_speed, request.vehicle.max_speed, blind ? kSlowest : planner::base::kInfinity});
+}
+
+void Planning::keep_in_column(planner::horizon::PathRequest& request) const {
+  if (!column_) return;
+  const double radius = request.vehicle.radius;
+  const double rate = request.velocity.z();
+  const double stop = request.position.z() + rate * std::abs(rate) / (2.0 * settings_.horizon.braking);
+  const auto [low, high] = std::minmax({request.position.z(), stop, request.target.z()});
+  request.volume.min.z() = std::max(request.volume.min.z(), std::min(column_->low + radius, low));
+  request.volume.max.z() = std::min(request.volume.max.z(), std::max(column_->high - radius, high));
 }
 
 // What is asked of any path of the vehicle; the request says where it begins and leads to.
@@ -234,7 +243,8 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
-  keep_in_sight(state, request);
+  keep_in_sight(state, motion.place_ahead(now, request.position).value_or(goal.target) - request.position, request);
+  if (goal.kind == Goal::Kind::kWaypoint) keep_in_column(request);
   if (!from_vehicle) {
     job.previous = stream.plan(job.start);
     // A plan to another waypoint is no plan to keep; one to a place on the way there is.

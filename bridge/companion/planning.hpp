@@ -38,8 +38,12 @@ class Planning {
   /// Starts a plan. Precondition: due().
   void start(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
   void tracks_came() { new_tracks_ = true; }
-  /// What has been seen to stand, from now on; null: nothing is known but the mission's map.
-  void see(std::shared_ptr<const map::Seen> seen) { seen_ = std::move(seen); }
+  /// What has been seen to stand, from now on (null: nothing is known but the mission's map), and how far up and down
+  /// the vehicle's column is free (none: that does not matter).
+  void see(std::shared_ptr<const map::Seen> seen, const std::optional<map::Occupancy::Column>& column) {
+    seen_ = std::move(seen);
+    column_ = column;
+  }
   /// The reference to stop along, by what is known now, without the planner.
   [[nodiscard]] planner::base::TimedPath stop(double now, Intake& intake, const MotionControl& motion,
                                               const MotionControl::StopStart& start);
@@ -64,12 +68,16 @@ class Planning {
                                                                    const MotionControl::StopStart& start);
   void look_around(double now, Intake& intake, PlanJob& job) const;
   void look_at_map(const vehicle::VehicleState& state, PlanJob& job) const;
-  /// Where the vehicle sees by clouds alone what stands, no faster than it can stop within that; slow where it flies
-  /// aside of where it looks.
-  void keep_in_sight(const vehicle::VehicleState& state, planner::horizon::PathRequest& request) const;
+  /// Where the vehicle sees by clouds alone what stands, no faster than it can stop within that; slow as long as it
+  /// does not look to where it is to fly, `ahead`, m.
+  void keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahead,
+                     planner::horizon::PathRequest& request) const;
   /// The speed up to which plans can be followed with this drag, 1/s; never below the cruise speed.
   [[nodiscard]] double attainable_speed(double drag) const;
   void demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const;
+  /// Not up and down into what was not seen: no higher and no lower than the vehicle's column is free, than it is and
+  /// can stop, and than the target.
+  void keep_in_column(planner::horizon::PathRequest& request) const;
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
   [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);
@@ -82,6 +90,7 @@ class Planning {
   std::optional<double> last_begun_;
   Goal::Kind last_goal_ = Goal::Kind::kWaypoint;
   bool new_tracks_ = false;  // since then
+  std::optional<map::Occupancy::Column> column_;
   std::shared_ptr<const map::Seen> seen_;
   double rate_kept_ = 0.0;  // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;

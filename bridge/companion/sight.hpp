@@ -56,6 +56,10 @@ class Sight {
 
   /// The newest map; null: none yet. Throws what the mapper threw.
   [[nodiscard]] std::shared_ptr<const map::Seen> seen() const { return mapper_ ? mapper_->seen() : nullptr; }
+  /// Mapper::column().
+  [[nodiscard]] std::optional<map::Occupancy::Column> column() const {
+    return mapper_ ? mapper_->column() : std::nullopt;
+  }
   /// The mission wants to see, and nothing came for too long.
   [[nodiscard]] bool is_stale(double now) const;
   [[nodiscard]] map::CloudSourceStatus source_status() const;

@@ -83,6 +83,11 @@ std::shared_ptr<const Seen> Mapper::seen() const {
   return seen_;
 }
 
+std::optional<Occupancy::Column> Mapper::column() const {
+  const std::scoped_lock lock(mutex_);
+  return column_;
+}
+
 MapperCounts Mapper::counts() const {
   const std::scoped_lock lock(mutex_);
   return counts_;
@@ -125,12 +130,17 @@ void Mapper::take(const CloudJob& job) {
     };
   }
   const CloudCounts counts = grid_.insert(cloud);
+  if (seen() == nullptr || job.anew) grid_.free_around(cloud.vehicle, kRoomAtStart);
+  Occupancy::Column column = grid_.free_column(cloud.vehicle, own_radius_);
+  column.low += job.shift.z();
+  column.high += job.shift.z();
   Seen now;
   now.boxes = grid_.boxes();
   now.origin = job.shift - Vec3(0.0, 0.0, job.up);
   now.up = job.up;
   std::shared_ptr<const Seen> before = seen();
-  const bool same = before != nullptr && now.boxes == before->boxes && now.origin == before->origin;
+  const bool same =
+      before != nullptr && now.boxes == before->boxes && now.origin == before->origin && now.up == before->up;
   if (!same) {
     now.number = before == nullptr ? 1 : before->number + 1;
     now.map = with_boxes(*known_, now.boxes, now.origin);
@@ -139,6 +149,7 @@ void Mapper::take(const CloudJob& job) {
   const double ms = clock_ != nullptr ? 1e3 * (clock_->now() - begun) : 0.0;
   const std::scoped_lock lock(mutex_);
   seen_ = std::move(before);
+  column_ = column;
   ++counts_.clouds;
   counts_.points.hits += counts.hits;
   counts_.points.clear += counts.clear;

@@ -58,6 +58,9 @@ struct MapperCounts {
 /// Keeps the map of one flight. All functions are safe from any thread.
 class Mapper {
  public:
+  /// m, about the vehicle at the first cloud: what no sensor sees there is taken to be free.
+  static constexpr double kRoomAtStart = 1.5;
+
   /// `clock`: to measure what a cloud takes on the thread; null: virtual time, clouds are taken in by put() itself.
   /// @throws std::invalid_argument as Occupancy does.
   Mapper(const OccupancySettings& settings, double own_radius,
@@ -70,6 +73,8 @@ class Mapper {
   void put(CloudJob job);
   /// The newest; null before the first cloud. Throws what the thread threw.
   [[nodiscard]] std::shared_ptr<const Seen> seen() const;
+  /// How far up and down the vehicle's column was free at the newest cloud, local ENU; none before the first.
+  [[nodiscard]] std::optional<Occupancy::Column> column() const;
   [[nodiscard]] MapperCounts counts() const;
 
  private:
@@ -84,6 +89,7 @@ class Mapper {
   std::condition_variable_any wake_;
   std::optional<CloudJob> job_;
   std::shared_ptr<const Seen> seen_;
+  std::optional<Occupancy::Column> column_;
   MapperCounts counts_;
   std::exception_ptr failure_;
   std::jthread thread_;  // last: its end comes first

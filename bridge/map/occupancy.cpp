@@ -19,8 +19,9 @@ constexpr std::uint8_t kEnd = 1;     // a ray ends in it, and nothing is there
 constexpr std::uint8_t kMarked = 2;  // something is
 constexpr std::array<int, 3> kShift = {0, 8, 16};  // of a cell's number along an axis, in its place
 
-constexpr int kShare = 3;      // of the cells that a box grows by, one in so many is occupied
-constexpr int kWidestGap = 1;  // cells, that it grows across
+constexpr int kUnknownShare = 4;  // of a layer's cells, one in so many may be unknown where it is free
+constexpr int kShare = 3;         // of the cells that a box grows by, one in so many is occupied
+constexpr int kWidestGap = 1;     // cells, that it grows across
 
 template <typename Visit>
 void for_each_cell(const CellBox& cells, const Visit& visit) {
@@ -78,6 +79,30 @@ void Occupancy::forget() {
   mark_ = 0;
 }
 
+Occupancy::Column Occupancy::free_column(const Vec3& place, double radius) const {
+  const Vec3 middle = place / kCell;
+  const double most = radius / kCell;
+  const Cell low = cell_of(middle.array() - most);
+  const Cell high = cell_of(middle.array() + most);
+  const auto is_free = [&](int z) {
+    int cells = 0, unknown = 0;
+    bool occupied = false;
+    for_each_cell({{low.x(), low.y(), z}, {high.x() + 1, high.y() + 1, z + 1}}, [&](const Cell& cell) {
+      if (((cell.cast<double>().array() + 0.5).matrix() - middle).head<2>().norm() > most) return;
+      const std::int8_t level = is_inside(cell) ? values_[place_of(cell)].level : kUnknown;
+      ++cells;
+      unknown += level == kUnknown ? 1 : 0;
+      occupied = occupied || level > 0;
+    });
+    return !occupied && kUnknownShare * unknown <= cells;
+  };
+  Column column{place.z(), place.z()};
+  const int from = cell_of(middle).z();
+  for (int z = from; z < from + kSize[2] && is_free(z); ++z) column.high = kCell * (z + 1);
+  for (int z = from; z > from - kSize[2] && is_free(z); --z) column.low = kCell * z;
+  return column;
+}
+
 // Marks that no cell has.
 void Occupancy::begin_marks() {
   if (mark_ + 2 * kMarks > std::numeric_limits<std::uint8_t>::max()) {
@@ -133,14 +158,15 @@ void Occupancy::age(double time) {
     return;
   }
   for (const auto all = static_cast<std::int64_t>(due); aged_ < all; ++aged_)
-    age_row(static_cast<std::size_t>(aged_ % rows));
+    age_row(static_cast<std::size_t>(aged_ % rows), aged_ / rows % (kMost / -kLeast) == 0);
 }
 
-void Occupancy::age_row(std::size_t row) {
+// What is free has fewer levels to lose, and loses them as much more slowly.
+void Occupancy::age_row(std::size_t row, bool free_too) {
   const auto first = values_.begin() + static_cast<std::ptrdiff_t>(row << kShift[1]);
   std::uint16_t left = 0;
-  std::for_each(first, first + kSize[0], [&left](Value& value) {
-    if (value.level == kUnknown) return;
+  std::for_each(first, first + kSize[0], [&left, free_too](Value& value) {
+    if (value.level == kUnknown || (value.level <= 0 && !free_too)) return;
     const int less = value.level > 0 ? value.level - 1 : value.level + 1;
     value.level = less == 0 || value.level == 0 ? kUnknown : static_cast<std::int8_t>(less);
     if (value.level > 0) ++left;
@@ -185,6 +211,16 @@ void Occupancy::take_point(const CloudView& cloud, const Vec3& sensor, const Vec
   mark = static_cast<std::uint8_t>(mark_ + (hit ? kMarked : kEnd));
   ++(hit ? counts.hits : counts.clear);
   rays_.push_back({end, hit});
+}
+
+void Occupancy::free_around(const Vec3& place, double radius) {
+  const Vec3 middle = place / kCell;
+  const double most = radius / kCell;
+  for_each_cell({cell_of(middle.array() - most), cell_of(middle.array() + most) + Cell::Ones()}, [&](const Cell& cell) {
+    if (!is_inside(cell) || ((cell.cast<double>().array() + 0.5).matrix() - middle).norm() > most) return;
+    std::int8_t& level = values_[place_of(cell)].level;
+    if (level == kUnknown) level = kLeast;
+  });
 }
 
 CloudCounts Occupancy::insert(const CloudView& cloud) {

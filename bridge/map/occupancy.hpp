@@ -78,6 +78,14 @@ class Occupancy {
   /// Few boxes that cover all occupied cells and none that is free, though some unknown ones between and behind them: a
   /// wall that is seen a bit at a time is one. In the order of their first cells, by z, y, x.
   [[nodiscard]] std::vector<CellBox> boxes();
+  /// How far up and down a place's column is free, z, m: each layer of it but for a quarter of its cells, in which
+  /// nothing is. The place's own z where not even that is known.
+  struct Column {
+    double low = 0.0, high = 0.0;
+  };
+  [[nodiscard]] Column free_column(const Vec3& place, double radius) const;
+  /// What is unknown within `radius`, m, of a place in the window is free.
+  void free_around(const Vec3& place, double radius);
   /// All is unknown.
   void forget();
 
@@ -104,7 +112,7 @@ class Occupancy {
   void slide_to(const Vec3& vehicle);
   void clear_plane(int axis, int number);
   void age(double time);
-  void age_row(std::size_t row);
+  void age_row(std::size_t row, bool free_too);
   void begin_marks();
   void set_level(std::size_t place, int level);
   [[nodiscard]] Vec3 clipped(const Vec3& from, const Vec3& to) const;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 
+#include "sim/families/families.hpp"
 #include "sim/flight/closed_loop.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/worlds/way_through.hpp"
@@ -72,6 +74,19 @@ TEST(SeenWorlds, AWallWithADoorIsFoundByACamera) {
 
 TEST(SeenWorlds, AWallWithADoorIsFoundByALidar) {
   expect_flown_through(unseen("scan: lidar", kWallWithADoor));
+}
+
+// Lamp posts beside a street that the vehicle does not look at when it begins; a ceiling that it never looks at.
+TEST(SeenWorlds, NothingIsFlownIntoThatIsOutOfView) {
+  for (const auto& [family, seed] : {std::pair("street", 1485606872U), {"office", 3682989115U}}) {
+    config::Scenario scenario = sim::families::make_world(family, seed);
+    sim::families::set_tier(scenario, sim::families::Tier::kCamera);
+    scenario.obstacles.clear();
+    std::size_t boxes = 0;
+    const auto result = flown_with(scenario, 2, boxes);
+    EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << family << ": " << result.flight.reason;
+    EXPECT_GT(result.min_clearance, 0.0) << family;
+  }
 }
 
 }  // namespace

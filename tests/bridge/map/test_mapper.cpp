@@ -55,6 +55,23 @@ TEST(Mapper, WhatIsSeenAndWhatIsKnownAreOneMap) {
   EXPECT_EQ(seen->map->tracks()[1].body.solid->half(), Vec3(0.1, 1.0, 0.5));
 }
 
+// The room at the start, in the local frame, wherever that has jumped to; then what was seen.
+TEST(Mapper, TellsHowFarUpAndDownIsFree) {
+  Mapper mapper({}, 0.3, known(), nullptr);
+  EXPECT_FALSE(mapper.column());
+  CloudJob job = plate(4.1, 0.0);
+  mapper.put(job);
+  EXPECT_NEAR(mapper.column()->high, kHere.z() + Mapper::kRoomAtStart, 0.25);
+  EXPECT_NEAR(mapper.column()->low, kHere.z() - Mapper::kRoomAtStart, 0.25);
+  for (Vec3* place : {&job.sensor, &job.vehicle, &job.shift}) place->z() += 5.0;
+  for (Eigen::Vector3f& point : job.points) point.z() += 5.0F;
+  mapper.put(job);
+  EXPECT_NEAR(mapper.column()->high, kHere.z() + 5.0 + Mapper::kRoomAtStart, 0.25);
+  job.vehicle.y() = job.sensor.y() += 5.0;
+  mapper.put(job);
+  EXPECT_EQ(mapper.column()->high, job.vehicle.z()) << "where nothing is known";
+}
+
 TEST(Mapper, AMapThatIsTheSameStaysTheSame) {
   Mapper mapper({}, 0.3, known(), nullptr);
   mapper.put(plate(4.1, 0.0));

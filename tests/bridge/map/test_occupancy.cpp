@@ -281,6 +281,33 @@ TEST(Occupancy, LinesOfAWallAreOneBoxAndItsWindowIsOpen) {
   }
 }
 
+// Up to where rays have passed, and no farther than what stands.
+TEST(Occupancy, AColumnIsFreeAsFarAsItWasSeen) {
+  Occupancy grid({});
+  grid.insert(seen({middle(5, 0, 1.5)}));
+  const auto unseen = grid.free_column({3.1, 3.1, 1.5}, 0.3);
+  EXPECT_EQ(unseen.low, 1.5);
+  EXPECT_EQ(unseen.high, 1.5);
+  grid.free_around(kHome, 1.5);
+  const auto room = grid.free_column(kHome, 0.3);
+  EXPECT_NEAR(room.high, kHome.z() + 1.5, 0.25);
+  EXPECT_NEAR(room.low, kHome.z() - 1.5, 0.25);
+  Points ceiling = wall(6.0);  // and over 3 m ahead, and the ground there
+  for (double x = 2.0; x < 4.0; x += 0.05) {
+    for (double y = -1.0; y < 1.0; y += 0.05) {
+      ceiling.push_back(middle(x, y, 2.5));
+      ceiling.push_back(middle(x, y, 0.1));
+    }
+  }
+  CloudView cloud = seen(ceiling);
+  cloud.floor = 0.3;
+  for (int i = 0; i < 3; ++i) grid.insert(cloud);
+  const auto ahead = grid.free_column({3.1, 0.1, 1.5}, 0.3);
+  EXPECT_LE(ahead.high, 2.5);
+  EXPECT_GE(ahead.high, 1.9);
+  EXPECT_LE(ahead.low, 1.1);
+}
+
 TEST(Occupancy, RefusesSettingsThatAreNone) {
   EXPECT_THROW(Occupancy({0.0, 60.0}), std::invalid_argument);
   EXPECT_THROW(Occupancy({26.0, 60.0}), std::invalid_argument);
