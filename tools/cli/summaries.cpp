@@ -152,7 +152,8 @@ Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const
     header["world"] = {{"min", log::vector_json(scenario.world->min)}, {"max", log::vector_json(scenario.world->max)}};
   if (Json shapes = shapes_json(scenario); !shapes.empty()) header["shapes"] = std::move(shapes);
   // What is scanned is not known: plans see of it what the log's `seen` records say.
-  if (!scenario.map.empty() && !scenario.sensing.scan) header["map"] = log::map_json(*config::make_map(scenario.map));
+  if (!scenario.map.empty())
+    header[scenario.sensing.scan ? "stands" : "map"] = log::map_json(*config::make_map(scenario.map));
   if (!scenario.vehicles.empty()) {
     header["vehicles"] = Json::array();
     for (const config::ScenarioVehicle& vehicle : config::all_vehicles(scenario)) {

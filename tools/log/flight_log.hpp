@@ -36,16 +36,16 @@ struct FlightLogOptions {
 /// edges}|{id, cylinder: {radius, height}}|{id, capsule: {radius, a, b}}|{id, vertices}, ...], each with `orientation`
 /// and `yaw_rate` where it has them, of the obstacles that are no spheres, about the `p` of their `obstacles` records,
 /// of the map, where there is one, `map`: [[x, y, z, radius, and of what is no sphere {prism} or {hull} as below], ...]
-/// in the map's order; and, where it has several, `vehicles`: [{name, radius, start, target}, ...] by number from 0};
-/// then, each with
-/// `type` and `t` (s): truth {p, v} and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where
-/// it has several vehicles, one truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks
-/// {tracks:
+/// in the map's order, or as `stands` where it is there to be seen and plans do not know it; and, where it has several,
+/// `vehicles`: [{name, radius, start, target}, ...] by number from 0}; then, each with `type` and `t` (s): truth {p, v}
+/// and one obstacles {id, p, radius} per obstacle, at 50 Hz, from the simulator; where it has several vehicles, one
+/// truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks {tracks:
 /// [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]}, plan {path: [[t, x, y, z], ...], ms, status, ...,
 /// from}, setpoint {p, v, a, yaw}, event {name, detail}, and before a plan that sees another map than the one before it
-/// seen {number, origin, added: [[six integers], ...], removed: likewise}: boxes of cells from the first three up to
-/// the last three (bridge::map::Seen; a cell is Occupancy::kCell wide). Vectors are [x, y, z], ENU, m. `t` of truth and
-/// obstacles is scenario time, of the others the companion's clock; in `replay` the two are one.
+/// seen {number, origin, added: [[six integers], ...], removed: likewise}: boxes of cells
+/// from the first three up to the last three (bridge::map::Seen; a cell is Occupancy::kCell wide). Vectors are [x, y,
+/// z], ENU, m. `t` of truth and obstacles is scenario time, of the others the companion's clock; in `replay` the two
+/// are one.
 ///
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
@@ -56,7 +56,8 @@ struct FlightLogOptions {
 /// ...] of the tracks that count among what stands, forecasts: [{track, radius, position_sigma, velocity_sigma,
 /// plain_until, bounces: [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in
 /// a row), paths: [{id, offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z],
-/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {seen, where: [min, max], up, floor, sigma},
+/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {seen, where: [min, max], up, floor,
+/// sigma},
 /// what of the header's map, or of that and the boxes of the `seen` record of that number, was in view
 /// (bridge::companion::MapView), and previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
 /// from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and
@@ -143,7 +144,7 @@ class FlightLog final : public bridge::companion::FlightObserver, public sim::wo
 /// [x, y, z].
 nlohmann::ordered_json vector_json(const Vec3& v);
 
-/// The header's `map`.
+/// The header's `map` or `stands`.
 nlohmann::ordered_json map_json(const planner::geometry::StaticMap& map);
 
 /// The header's `parameters`: every setting by its key.

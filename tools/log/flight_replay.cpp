@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "planner/geometry/validity.hpp"
+#include "tools/log/map_record.hpp"
 
 namespace jink::tools::log {
 namespace {
@@ -75,32 +76,6 @@ planner::base::VehicleLimits vehicle_of(const Json& from) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]};
 }
 
-Vec3 at(const std::vector<double>& numbers, std::size_t i) {
-  return {numbers[i], numbers[i + 1], numbers[i + 2]};
-}
-
-std::shared_ptr<const planner::base::Solid> solid_of(const Json& record) {
-  using planner::base::Solid;
-  const char* const kind = record.contains("hull") ? "hull" : "prism";
-  std::vector<double> x;
-  for (const Json& number : list_of(record, kind)) x.push_back(exact(number, kind));
-  try {
-    if (record.contains("hull")) {
-      if (x.size() % 3 != 0) refuse("\"hull\" is not a list of points");
-      std::vector<Vec3> vertices;
-      for (std::size_t i = 0; i < x.size(); i += 3) vertices.push_back(at(x, i));
-      return Solid::hull(std::move(vertices));
-    }
-    constexpr std::size_t kNumbers = 17;
-    if (x.size() != kNumbers) refuse("\"prism\" is not a list of 17 numbers");
-    Solid::Pose pose{at(x, 5), {}};
-    pose.axes << at(x, 8), at(x, 11), at(x, 14);
-    return Solid::prism(at(x, 0), x[3], x[4], pose);
-  } catch (const std::invalid_argument& error) {
-    refuse(error.what());
-  }
-}
-
 planner::base::Body body_of(const Json& record, double radius) {
   if (!record.is_object()) refuse("\"tracks\" holds a body that is no object");
   planner::base::Body body{solid_of(record), exact(member(record, "yaw"), "yaw"),
@@ -124,25 +99,6 @@ planner::base::Track track_of(const Json& item) {
           x[11],
           x[12],
           item.size() > kNumbers ? body_of(item[kNumbers], x[9]) : planner::base::Body()};
-}
-
-/// The header's map; none where it has none.
-std::shared_ptr<const planner::geometry::StaticMap> map_of(const Json& header) {
-  if (!header.contains("map")) return nullptr;
-  std::vector<planner::base::Track> tracks;
-  for (const Json& item : list_of(header, "map")) {
-    constexpr std::size_t kNumbers = 4;  // and a solid, where it has one
-    if (!item.is_array() || item.size() != kNumbers + 1) check_list(item, "map", kNumbers);
-    planner::base::Track track;
-    track.position = {exact(item[0], "map"), exact(item[1], "map"), exact(item[2], "map")};
-    track.radius = exact(item[3], "map");
-    if (item.size() > kNumbers) {
-      if (!item[kNumbers].is_object()) refuse("\"map\" holds a solid that is no object");
-      track.body.solid = solid_of(item[kNumbers]);
-    }
-    tracks.push_back(std::move(track));
-  }
-  return std::make_shared<const planner::geometry::StaticMap>(std::move(tracks));
 }
 
 planner::geometry::KnownPath known_path_of(const Json& item) {
@@ -238,38 +194,6 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   }
   job.previous = path_of(from, "previous");
   return job;
-}
-
-bridge::map::CellBox box_of(const Json& item) {
-  constexpr double kFarthest = 1e7;  // cells
-  const auto numbers = exact_numbers<6>(item, "boxes");
-  if (!std::all_of(numbers.begin(), numbers.end(),
-                   [](double n) { return std::abs(n) <= kFarthest && n == std::floor(n); }))
-    refuse("a box of cells holds what is no number of a cell");
-  const Eigen::Map<const Eigen::Array<double, 6, 1>> corners(numbers.data());
-  const bridge::map::CellBox box{corners.head<3>().cast<int>(), corners.tail<3>().cast<int>()};
-  if (!(box.min.array() < box.max.array()).all()) refuse("a box of cells is empty");
-  return box;
-}
-
-/// What a plan saw, from what the one before it saw and what has changed; null: nothing.
-std::shared_ptr<const bridge::map::Seen> seen_of(const Json& record, const bridge::map::Seen* before,
-                                                 const planner::geometry::StaticMap* known) {
-  bridge::map::Seen seen;
-  if (before != nullptr) seen.boxes = before->boxes;
-  seen.number = count_of(record, "number");
-  seen.origin = exact_vector_of(record, "origin");
-  if (!seen.origin.allFinite()) refuse("\"origin\" is not finite");
-  for (const Json& item : list_of(record, "removed")) {
-    const auto gone = std::find(seen.boxes.begin(), seen.boxes.end(), box_of(item));
-    if (gone == seen.boxes.end()) refuse("\"removed\" names a box that is not there");
-    seen.boxes.erase(gone);
-  }
-  for (const Json& item : list_of(record, "added")) seen.boxes.push_back(box_of(item));
-  std::sort(seen.boxes.begin(), seen.boxes.end(), bridge::map::comes_before);
-  const planner::geometry::StaticMap none;
-  seen.map = bridge::map::with_boxes(known != nullptr ? *known : none, seen.boxes, seen.origin);
-  return std::make_shared<const bridge::map::Seen>(std::move(seen));
 }
 
 std::uint64_t bits(double x) {

@@ -34,6 +34,7 @@ constexpr std::string_view kVehicle = "vehicle";
 constexpr Color kFlown{0.0, 0.447, 0.698, 1.0}, kPlan{0.0, 0.62, 0.451, 1.0}, kBlocked{0.835, 0.369, 0.0, 1.0};
 constexpr Color kObstacle{0.851, 0.643, 0.255, 0.9}, kTrack{0.659, 0.278, 0.541, 0.35},
     kAheadColor{0.659, 0.278, 0.541, 1.0};
+constexpr Color kStanding{0.663, 0.671, 0.635, 0.6}, kSeen{0.498, 0.592, 0.671, 0.8};
 constexpr Color kVolume{0.6, 0.65, 0.7, 0.8}, kOther{0.247, 0.608, 0.82, 1.0};
 
 Vec3 vector(const report::Triple& v) {
@@ -132,6 +133,8 @@ class FlightExport {
       if (const auto p = triple_in(flight_.header, key)) entity.texts.push_back({*p, key, kPlan});
     }
     write_scene("/scene/flight", kMap, flight_.first, {entity}, false);
+    if (flight_.map != nullptr) write_map("/scene/map", flight_.first, *flight_.map, kStanding);
+    for (const report::SeenRecord& seen : flight_.seen) write_map("/scene/seen", seen.t, *seen.map, kSeen);
     Entity vehicle{.id = "vehicle"};
     vehicle.spheres.push_back({Vec3::Zero(), report::vehicle_radius(flight_).value_or(0.05), kFlown});
     if (!motion.empty()) write_scene("/scene/vehicle", kVehicle, flight_.first, {vehicle}, false);
@@ -141,6 +144,21 @@ class FlightExport {
       body.spheres.push_back({Vec3::Zero(), report::vehicle_radius(flight_, other.number).value_or(0.05), kOther});
       write_scene("/scene/vehicle_" + number, body.id, flight_.first, {body}, false);
     }
+  }
+
+  void write_map(const std::string& topic, double t, const planner::geometry::StaticMap& map, const Color& color) {
+    Entity entity{.id = "map"};
+    for (const planner::base::Track& track : map.tracks()) {
+      const Vec3 place = track.position + Vec3(0.0, 0.0, flight_.map_up);
+      if (track.body.solid == nullptr) {
+        entity.spheres.push_back({place, track.radius, color});
+        continue;
+      }
+      std::vector<Vec3> corners = report::solid_corners(*track.body.solid);
+      std::vector<report::Triangle> faces = report::convex_hull(corners);
+      entity.triangles.push_back({place, std::move(corners), std::move(faces), color});
+    }
+    write_scene(topic, kMap, t, {entity}, false);
   }
 
   static void add_way(Entity& entity, const std::vector<report::MotionSample>& motion, const Color& color) {
@@ -273,6 +291,11 @@ class FlightExport {
       Entity entity{.id = "plan"};
       const bool blocked = plan.status != "reaches" && plan.status != "progresses";
       if (points.size() > 1) entity.lines.push_back({points, 3.0, blocked ? kBlocked : kPlan});
+      if (!points.empty() && !plan.way.empty()) {
+        foxglove::Line guide{{points.front()}, 1.0, kPlan};
+        for (const report::Triple& place : plan.way) guide.points.push_back(vector(place));
+        entity.lines.push_back(std::move(guide));
+      }
       write_scene("/scene/plan", kMap, plan.t, {entity}, true);
       base::JsonWriter line;
       line.open('{').key("ms").number(plan.ms).key("status").text(plan.status).key("kept").flag(plan.kept);

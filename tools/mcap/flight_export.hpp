@@ -23,8 +23,9 @@ struct ExportResult {
 /// (foxglove.PosesInFrame), /plan/time (jink.PlanTime {ms, status, kept, missed}), /events (foxglove.Log), and for each
 /// sample of the vehicle /tf (foxglove.FrameTransform) and /speed (jink.Speed {speed, height}). /clearance
 /// (jink.Clearance {clearance, from}) has one for each instant at which it is known. foxglove.SceneUpdate:
-/// /scene/flight once (volume, start, target, the whole way), /scene/vehicle once, /scene/obstacles (true shapes) and
-/// /scene/tracks (as tracked, and where they are predicted to be within 2 s) at 20 Hz, /scene/plan with each plan.
+/// /scene/flight once (volume, start, target, the whole way), /scene/map once (what stands), /scene/seen twice a second
+/// (what of it had been seen), /scene/vehicle once, /scene/obstacles (true shapes) and /scene/tracks (as tracked, and
+/// where they are predicted to be within 2 s) at 20 Hz, /scene/plan with each plan, and the guide that it was led by.
 ///
 /// Throws std::runtime_error as read_flight() does and where the file cannot be written.
 ExportResult export_mcap(const std::filesystem::path& log, const std::filesystem::path& mcap);

@@ -96,6 +96,7 @@ class Scene {
     this.items = [];
     this.counts = {obstacles: 0, shapes: 0, tracks: 0, flown: 0, whole: 0, plan: 0, vehicle: 0};
     this.ground.draw(ctx, camera);
+    this.drawStanding(moment);
     for (const body of moment.solid) drawShadow(ctx, camera, body.p, body.r, this.solidOf(moment, body));
     for (const v of this.vehicles(moment)) drawShadow(ctx, camera, v.p, v.r);
     this.collectPaths(moment);
@@ -105,6 +106,21 @@ class Scene {
     for (const v of this.vehicles(moment)) this.drawOutline(v);
     if (moment.nearest) this.drawNearest(moment);
     return this.counts;
+  }
+
+  /** What stands and what of it has been seen, from far to near, and under all else: it hides nothing of the flight. */
+  drawStanding(moment) {
+    const {ctx, camera} = this;
+    const drawn = (color) => (body) => ({body, color, depth: camera.view(body.p)[2]});
+    const order = this.flight.standing.map(drawn(kColors.map)).concat(moment.seen.map(drawn(kColors.seen)));
+    order.sort((a, b) => b.depth - a.depth);
+    ctx.globalAlpha = 0.55;
+    for (const {body, color} of order) {
+      if (body.solid) drawSolid(ctx, camera, body.p, body.solid, color);
+      else drawSphere(ctx, camera, body.p, body.r, color);
+    }
+    ctx.globalAlpha = 1;
+    this.counts.map = order.length;
   }
 
   /** The flight's own vehicle, then the others, as drawn. */
@@ -145,6 +161,9 @@ class Scene {
                       blocked ? [6, 3] : []);
       ++this.counts.plan;
     }
+    const way = [path.slice(1, 4), ...Array.from({length: (moment.plan.way || []).length / 3},
+                                                 (_, i) => point(moment.plan.way, i))];
+    for (let i = 1; i < way.length; ++i) this.addSegment(way[i - 1], way[i], kColors.plan, 1.2, [2, 4]);
     for (const known of moment.plan.known || []) {
       for (let i = 4; i + 3 < known.path.length; i += 4) {
         if (known.path[i] < moment.t) continue;

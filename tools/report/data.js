@@ -2,9 +2,11 @@
 // flights [{file, t [first, last];
 //   vehicle {from: "truth"|"state", radius|null, t [], p [x,y,z,...], speed []};
 //   others [{number, radius|null, t, p, speed, clearance}] the further vehicles of a team;
+//   map [{p, r, shape: null | {vertices, faces}}] what stands, near the flight;
+//   seen [{p, r, box, from, until|null}] what of it had been seen, and when;
 //   setpoints {t, p, speed}; shapes {id: {box}|{vertices, faces, yaw_rate?}} of obstacles that are no spheres;
 //   obstacles, tracks null | {t [], stride, frames [[id,x,y,z,radius(,vx,vy,vz,ax,ay,az,age),...], ...]};
-//   plans [{t, ms, status, kept, missed, path [t,x,y,z,...], trust?, known? [{id, radius, path}]}];
+//   plans [{t, ms, status, kept, missed, path [t,x,y,z,...], trust?, way? [x,y,z,...], known? [{id, radius, path}]}];
 //   events [[t, name, detail, "good"|"warn"|"bad"|""]]; clearance null | {from: "true"|"tracks", t, d, min {t, d}};
 //   summary null | jink-flight/1; derived {...}}].
 const kOldestTracks = 1.0;     // s, without a message after which tracks are no longer drawn
@@ -97,6 +99,8 @@ class Flight {
     this.events.sort((a, b) => a[0] - b[0]);
     this.planTimes = this.plans.map((plan) => plan.t);
     this.solids = new Map(Object.entries(this.shapes).map(([id, shape]) => [Number(id), polyhedron(shape)]));
+    this.standing = this.map.map(({p, r, shape}) => ({p, r, solid: shape ? polyhedron(shape) : undefined}));
+    for (const body of this.seen) body.solid = polyhedron(body);
     this.radius = this.vehicle.radius || 0;
   }
 
@@ -121,12 +125,15 @@ class Flight {
   }
 
   /** The nearest surface to a point at t: {body, free, at}, free less the vehicle's radius; null without any. */
-  nearest(p, t, solid, others) {
+  nearest(p, t, solid, others, standing) {
     let nearest = null;
-    for (const body of [...solid, ...others]) {
-      const {d, q} = toSurface(p, body, this.solidAt(body.id, t));
+    const regard = (body, shape) => {
+      if (nearest && length(p, body.p) - body.r - this.radius >= nearest.free) return;
+      const {d, q} = toSurface(p, body, shape);
       if (!nearest || d - this.radius < nearest.free) nearest = {body, free: d - this.radius, at: q};
-    }
+    };
+    for (const body of [...solid, ...others]) regard(body, this.solidAt(body.id, t));
+    for (const body of standing) regard(body, body.solid);
     return nearest;
   }
 
@@ -145,8 +152,10 @@ class Flight {
       return motion ? [{...motion, r: other.radius || 0, number: other.number, series: other}] : [];
     });
     const plan = this.planAt(t);
-    const nearest = vehicle ? this.nearest(vehicle.p, t, solid, others) : null;
-    return {t, over: time > this.t[1] + 1e-6, truth, tracks, solid, vehicle, others, nearest, plan,
+    const seen = this.seen.filter(({from, until}) => from <= t && (until === null || t < until));
+    const standing = this.vehicle.from === "truth" ? this.standing : this.standing.concat(seen);
+    const nearest = vehicle ? this.nearest(vehicle.p, t, solid, others, standing) : null;
+    return {t, over: time > this.t[1] + 1e-6, truth, tracks, solid, vehicle, others, seen, nearest, plan,
             trust: plan ? plan.trust ?? Infinity : 0, setpoint: motionAt(this.setpoints, t)};
   }
 }

@@ -18,7 +18,8 @@ constexpr double kFigureWidth_mm = 180.0;
 /// What the figure is drawn with, "#rrggbb": the colours of Okabe and Ito, those of the page.
 struct FigureColors {
   static constexpr std::string_view kFlown = "#0072b2", kPlan = "#009e73", kBlocked = "#d55e00", kObstacle = "#d9a441",
-                                    kTrack = "#a8478a", kOther = "#3f9bd1", kLeast = "#c03a00";
+                                    kTrack = "#a8478a", kOther = "#3f9bd1", kLeast = "#c03a00", kMap = "#c9cac2",
+                                    kSeen = "#7f97ab";
 };
 
 /// The figure of a flight: the view from above and from the side (in metres, equal scales) with the flown path, the

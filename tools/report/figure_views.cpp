@@ -19,8 +19,9 @@ using jink::tools::figures::Look;
 using jink::tools::figures::Panel;
 using jink::tools::figures::Series;
 
-constexpr double kPad = 2.0;         // m, before and behind the flown way
-constexpr double kBeside = 3.5;      // m, beside it
+constexpr double kPad = 2.0;     // m, before and behind the flown way
+constexpr double kBeside = 3.5;  // m, beside it
+constexpr std::string_view kMapEdge = "#8d8f86";
 constexpr double kTrail = 2.0;       // s, of an obstacle's way before and after the instant
 constexpr double kAheadStep = 0.1;   // s
 constexpr double kMostExtent = 1e5;  // m; nothing that flies a log's length goes further
@@ -127,6 +128,32 @@ std::vector<Triple> corners_of(const FlightData& flight, const Body& body, doubl
   return corners;
 }
 
+/// What stands by a map, if any, as far as it is in view.
+void add_map(View& view, const planner::geometry::StaticMap* map, const char* label, std::string_view colour) {
+  if (map == nullptr) return;
+  const auto &low = view.scale.low, &high = view.scale.high;
+  const Vec3 up(0.0, 0.0, view.flight.data.map_up);
+  Drawing solids = view.drawing(label, Kind::areas,
+                                {.colour = text_of(colour), .width = 0.5, .edge = text_of(kMapEdge), .opacity = 0.4});
+  for (std::size_t i = 0; i < map->tracks().size(); ++i) {
+    const planner::base::Box& box = map->box(i);
+    const auto is_in_view = [&](std::size_t k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      return box.min[axis] + up[axis] <= high[k] && box.max[axis] + up[axis] >= low[k];
+    };
+    if (!is_in_view(view.scale.across) || !is_in_view(view.from_above ? 1 - view.scale.across : 2)) continue;
+    const planner::base::Track& track = map->tracks()[i];
+    if (track.body.solid == nullptr) {
+      solids.add_disc(triple(track.position + up), track.radius);
+      continue;
+    }
+    std::vector<Triple> corners;
+    for (const Vec3& corner : solid_corners(*track.body.solid)) corners.push_back(triple(track.position + up + corner));
+    solids.add_outline(corners);
+  }
+  std::move(solids).add_to(view.panel);
+}
+
 /// Where each obstacle was shortly before the instant and will be shortly after it.
 void add_trails(View& view) {
   std::map<std::uint64_t, std::vector<Triple>> trails;
@@ -215,6 +242,18 @@ void add_plan(View& view) {
     begun = true;
   }
   std::move(path).add_to(view.panel);
+}
+
+/// The way round what stands that the plan was led along.
+void add_way(View& view) {
+  const PlanRecord* plan = view.flight.plan();
+  if (plan == nullptr || plan->way.empty() || plan->path.empty()) return;
+  Drawing way =
+      view.drawing("guide", Kind::line, {.colour = text_of(FigureColors::kPlan), .width = 1.1, .dashes = "(4,8)"});
+  const auto& [t, x, y, z] = plan->path.front();
+  way.add({x, y, z});
+  for (const Triple& place : plan->way) way.add(place);
+  std::move(way).add_to(view.panel);
 }
 
 /// Dots along the flown way, a round number of seconds apart.
@@ -316,6 +355,8 @@ Panel view_panel(const FigureFlight& flight, const FigureScale& scale, bool from
   panel.x_numbers = !from_above;
   panel.y_step = jink::tools::figures::round_step(scale.high[u] - scale.low[u], std::max(2.0, frame.height / 9.0));
   if (!from_above) panel.x_label = kAxes[a];
+  add_map(view, flight.data.map.get(), "map", FigureColors::kMap);
+  add_map(view, seen_at(flight.data, flight.at), "map, as seen", FigureColors::kSeen);
   add_trails(view);
   add_obstacles(view);
   add_tracks(view);
@@ -325,6 +366,7 @@ Panel view_panel(const FigureFlight& flight, const FigureScale& scale, bool from
   Drawing flown = view.drawing("flown", Kind::line, {.colour = text_of(FigureColors::kFlown), .width = 1.7});
   flown.add_way(flight.motion());
   std::move(flown).add_to(panel);
+  add_way(view);
   add_plan(view);
   add_clock(view);
   add_ends(view);

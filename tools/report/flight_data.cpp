@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tools/log/log_reader.hpp"
+#include "tools/log/map_record.hpp"
 
 namespace jink::tools::report {
 namespace {
@@ -38,6 +39,7 @@ constexpr double kTurned = 1e3;    // rad
 constexpr double kTurnRate = 100;  // rad/s
 constexpr std::size_t kMostVertices = 10000;
 constexpr std::size_t kMostVehicles = 100;
+constexpr double kSeenInterval = 0.5;  // s
 
 Triple bounded(const Json& value, const char* key, double low, double high) {
   const Triple v = log::numbers<3>(value, key);
@@ -100,6 +102,10 @@ void add_inputs(PlanRecord& plan, const Json& record) {
   if (from == record.end() || !from->is_object()) return;
   if (from->contains("acceleration_trust"))
     plan.acceleration_trust = log::exact(log::member(*from, "acceleration_trust"), "acceleration_trust");
+  if (from->contains("way")) {
+    for (const Json& place : log::list_of(*from, "way")) plan.way.push_back(log::numbers<3>(place, "way"));
+  }
+  if (const auto map = from->find("map"); map != from->end()) plan.map_up = log::number_of(*map, "up");
   if (!from->contains("paths")) return;
   const double start = log::number_of(*from, "start");
   for (const Json& path : log::list_of(*from, "paths")) {
@@ -166,6 +172,10 @@ class Reader {
       for (const Json& point : log::list_of(record, "path")) plan.path.push_back(log::numbers<4>(point, "path"));
       add_inputs(plan, record);
       data_.plans.push_back(std::move(plan));
+    } else if (type == "seen") {
+      seen_ = log::seen_of(record, seen_.get(), nullptr);
+      if (data_.seen.empty() || t - data_.seen.back().t >= kSeenInterval) data_.seen.push_back({t, nullptr});
+      data_.seen.back().map = seen_->map;
     } else if (type == "setpoint") {
       data_.setpoints.push_back({t, triple_of(record, "p"), triple_of(record, "v")});
     } else if (type == "event") {
@@ -194,6 +204,7 @@ class Reader {
   FlightData& data_;
   bool any_ = false;
   std::string mode_;
+  std::shared_ptr<const bridge::map::Seen> seen_;
 };
 
 }  // namespace
@@ -211,11 +222,18 @@ std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t num
   return radius->get<double>();
 }
 
+const planner::geometry::StaticMap* seen_at(const FlightData& flight, double t) {
+  const auto next = std::upper_bound(flight.seen.begin(), flight.seen.end(), t,
+                                     [](double time, const SeenRecord& record) { return time < record.t; });
+  return next == flight.seen.begin() ? nullptr : std::prev(next)->map.get();
+}
+
 FlightData read_flight(const std::filesystem::path& log) {
   log::LogReader lines(log);
   FlightData flight;
   flight.header = lines.header();
   try {
+    flight.map = log::map_of(flight.header, flight.header.contains("stands") ? "stands" : "map");
     flight.shapes = shapes_of(flight.header);
   } catch (const log::NotFinite&) {
     lines.fail("header \"shapes\" holds a number that is not finite");
@@ -230,6 +248,8 @@ FlightData read_flight(const std::filesystem::path& log) {
       lines.fail(error.what());
     }
   }
+  for (auto plan = flight.plans.rbegin(); plan != flight.plans.rend(); ++plan)
+    flight.map_up = plan->map_up.value_or(flight.map_up);
   flight.lines = lines.lines();
   flight.cut_off = lines.cut_off() ? 1 : 0;
   return flight;

@@ -8,12 +8,14 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/scenario.hpp"
+#include "planner/geometry/static_map.hpp"
 
 namespace jink::tools::report {
 
@@ -60,6 +62,14 @@ struct PlanRecord {
   /// s, for which the accelerations of the tracks were believed; infinite where the log does not bound it.
   double acceleration_trust = std::numeric_limits<double>::infinity();
   std::vector<KnownPathRecord> known_paths;
+  std::vector<Triple> way;       ///< corners of the way round what stands that it was led along, the last being its end
+  std::optional<double> map_up;  ///< as FlightData::map_up was then; none: it saw no map
+};
+
+/// What had been seen to stand at `t`, besides what was known.
+struct SeenRecord {
+  double t = 0.0;
+  std::shared_ptr<const planner::geometry::StaticMap> map;
 };
 
 /// A vehicle of a simulator's log with several.
@@ -78,7 +88,10 @@ struct EventRecord {
 struct FlightData {
   nlohmann::json header;
   std::map<std::uint64_t, config::Obstacle>
-      shapes;                        ///< of those that are no spheres, about Body::position; motion unset
+      shapes;  ///< of those that are no spheres, about Body::position; motion unset
+  std::shared_ptr<const planner::geometry::StaticMap> map;  ///< what stands, or was known to; none: nothing
+  std::vector<SeenRecord> seen;                             ///< by time, two a second at the most
+  double map_up = 0.0;               ///< z of the log's frame less the map's, m, by the first plan
   std::vector<OtherVehicle> others;  ///< in the order of their numbers
   std::vector<MotionSample> truth, states, setpoints;
   std::vector<BodyFrame> obstacles, tracks;
@@ -93,6 +106,9 @@ struct FlightData {
 
 /// The radius of vehicle `number` by the header: "vehicle", or of several "vehicles"; none where it does not tell.
 [[nodiscard]] std::optional<double> vehicle_radius(const FlightData& flight, std::uint64_t number = 0);
+
+/// What had been seen to stand at t; null: nothing.
+[[nodiscard]] const planner::geometry::StaticMap* seen_at(const FlightData& flight, double t);
 
 /// Reads `log`. Throws std::runtime_error "FILE: ..." where it cannot be opened and "FILE:LINE: ..." for content that
 /// is not jink-log/1; only the last line may be cut off. Linear in the log's size, which is held in memory.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <variant>
 
+#include "planner/verify/solid_contact.hpp"
 #include "sim/world/shapes.hpp"
 #include "tools/report/convex_hull.hpp"
 #include "tools/report/event_severity.hpp"
@@ -24,6 +25,7 @@ constexpr double kMostSamples = 3000.0;      // of one series; a longer flight i
 constexpr std::size_t kMostPathPoints = 41;  // of one plan
 constexpr double kOldestState = 0.2;         // s, age up to which an estimate is compared with tracks
 constexpr double kSlack = 1e-6;              // s, for times that are sums of steps
+constexpr double kShownMap = 15.0;           // m, about the flown way: what stands there is shown
 
 Json rounded(double x, double digits) {
   return std::round(x * digits) / digits;
@@ -38,6 +40,9 @@ Json centi(double x) {
   return rounded(x, 1e2);
 }
 
+Vec3 vec(const Triple& v) {
+  return {v[0], v[1], v[2]};
+}
 double norm(const Triple& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
@@ -111,11 +116,79 @@ Json plans_json(const std::vector<PlanRecord>& plans) {
     Json item{{"t", seconds(plan.t)}, {"ms", centi(plan.ms)},  {"status", plan.status},
               {"kept", plan.kept},    {"missed", plan.missed}, {"path", path_json(plan.path)}};
     if (std::isfinite(plan.acceleration_trust)) item["trust"] = centi(plan.acceleration_trust);
+    for (const Triple& place : plan.way) append(item["way"], place);
     for (const KnownPathRecord& known : plan.known_paths) {
       item["known"].push_back(
           {{"id", known.id}, {"radius", millimetres(known.radius)}, {"path", path_json(known.points)}});
     }
     list.push_back(std::move(item));
+  }
+  return list;
+}
+
+/// {vertices: [x, y, z, ...], faces: [i, j, k, ...]} of the convex hull of corners.
+Json hull_json(const std::vector<Vec3>& corners) {
+  Json entry;
+  for (const Vec3& v : corners) append(entry["vertices"], {v.x(), v.y(), v.z()});
+  entry["faces"] = Json::array();
+  for (const Triangle& face : convex_hull(corners)) {
+    for (const std::size_t corner : face) entry["faces"].push_back(corner);
+  }
+  return entry;
+}
+
+/// Where what stands is shown, in the map's frame.
+planner::base::Box shown_part(const std::vector<MotionSample>& vehicle, double map_up) {
+  planner::base::Box flown{Vec3::Constant(planner::base::kInfinity), Vec3::Constant(-planner::base::kInfinity)};
+  for (const MotionSample& sample : vehicle) {
+    flown.min = flown.min.cwiseMin(vec(sample.position));
+    flown.max = flown.max.cwiseMax(vec(sample.position));
+  }
+  flown = planner::geometry::grown(flown, kShownMap);
+  flown.min.z() -= map_up;
+  flown.max.z() -= map_up;
+  return flown;
+}
+
+/// What stands: [{p, r, shape: null or as in shapes_json()}, ...].
+Json map_json(const FlightData& flight, const planner::base::Box& part) {
+  Json list = Json::array();
+  if (flight.map == nullptr) return list;
+  std::vector<planner::base::Track> shown;
+  flight.map->near(part, flight.map_up, shown);
+  for (const planner::base::Track& track : shown) {
+    const planner::base::Solid* solid = track.body.solid.get();
+    Json& entry = list.emplace_back(Json{{"p", Json::array()}, {"r", millimetres(track.radius)}, {"shape", nullptr}});
+    append(entry["p"], {track.position.x(), track.position.y(), track.position.z()});
+    if (solid != nullptr) entry["shape"] = hull_json(solid_corners(*solid));
+  }
+  return list;
+}
+
+/// What had been seen to stand, box by box: [{p, r, box: edges, from: s, until: s or null}, ...].
+Json seen_json(const FlightData& flight, const planner::base::Box& part) {
+  using Corners = std::array<double, 6>;
+  Json list = Json::array();
+  std::map<Corners, std::size_t> before;  // places in the list
+  for (const SeenRecord& record : flight.seen) {
+    std::map<Corners, std::size_t> now;
+    for (std::size_t i = 0; i < record.map->tracks().size(); ++i) {
+      const planner::base::Box& box = record.map->box(i);
+      if ((box.min.array() > part.max.array()).any() || (box.max.array() < part.min.array()).any()) continue;
+      const Corners corners{box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
+      if (const auto known = before.find(corners); known != before.end()) {
+        now.insert(before.extract(known));
+        continue;
+      }
+      now.emplace(corners, list.size());
+      const Vec3 centre = 0.5 * (box.min + box.max) + Vec3(0.0, 0.0, flight.map_up), edges = box.max - box.min;
+      Json& entry = list.emplace_back(
+          Json{{"r", millimetres(0.5 * edges.norm())}, {"from", seconds(record.t)}, {"until", nullptr}});
+      append(entry["p"], {centre.x(), centre.y(), centre.z()});
+      append(entry["box"], {edges.x(), edges.y(), edges.z()});
+    }
+    for (const auto& [corners, place] : before) list[place]["until"] = seconds(record.t);
+    before = std::move(now);
   }
   return list;
 }
@@ -130,12 +203,7 @@ Json shapes_json(const std::map<std::uint64_t, config::Obstacle>& shapes) {
       entry["box"] = {millimetres(box->edges.x()), millimetres(box->edges.y()), millimetres(box->edges.z())};
       continue;
     }
-    const std::vector<Vec3> corners = shape_corners(obstacle, 0.0);
-    for (const Vec3& v : corners) append(entry["vertices"], {v.x(), v.y(), v.z()});
-    entry["faces"] = Json::array();
-    for (const Triangle& face : convex_hull(corners)) {
-      for (const std::size_t corner : face) entry["faces"].push_back(corner);
-    }
+    entry = hull_json(shape_corners(obstacle, 0.0));
     if (obstacle.yaw_rate != 0.0) entry["yaw_rate"] = obstacle.yaw_rate;
   }
   return by_id;
@@ -161,12 +229,12 @@ Json clearance_json(const std::vector<ClearanceSample>& samples, double interval
 }
 
 /// Of tracks `ahead` seconds after their time.
-std::optional<double> nearest_track(const Triple& vehicle, double radius, const BodyFrame& frame, double ahead) {
+std::optional<double> nearest_track(const Triple& vehicle, const BodyFrame& frame, double ahead) {
   std::optional<double> least;
   for (const Body& body : frame.bodies) {
     Triple there = body.position;
     for (std::size_t k = 0; k < 3; ++k) there[k] += ahead * body.velocity[k];
-    const double free = distance(vehicle, there) - body.radius - radius;
+    const double free = distance(vehicle, there) - body.radius;
     if (!least || free < *least) least = free;
   }
   return least;
@@ -176,10 +244,8 @@ std::optional<double> nearest_track(const Triple& vehicle, double radius, const 
 double surface_distance(const FlightData& flight, const Body& body, double t, const Triple& from) {
   const auto shape = flight.shapes.find(body.id);
   if (shape == flight.shapes.end()) return distance(from, body.position) - body.radius;
-  const auto vector = [](const Triple& v) { return Vec3(v[0], v[1], v[2]); };
   const Eigen::Matrix3d axes = sim::world::axes_at(shape->second, t);
-  return sim::world::distance(shape->second.shape, Vec3::Zero(),
-                              axes.transpose() * (vector(from) - vector(body.position)));
+  return sim::world::distance(shape->second.shape, Vec3::Zero(), axes.transpose() * (vec(from) - vec(body.position)));
 }
 
 const std::vector<MotionSample>& truth_of(const FlightData& flight, std::size_t vehicle) {
@@ -189,6 +255,21 @@ const std::vector<MotionSample>& truth_of(const FlightData& flight, std::size_t 
 /// The number by which the log knows the vehicle.
 std::uint64_t number_of(const FlightData& flight, std::size_t vehicle) {
   return vehicle == 0 ? 0 : flight.others[vehicle - 1].number;
+}
+
+/// To what stands by a map, if any.
+void regard_map(const planner::geometry::StaticMap* map, double map_up, const MotionSample& sample,
+                std::optional<double>& least) {
+  if (map == nullptr) return;
+  const Vec3 place = vec(sample.position) - Vec3(0.0, 0.0, map_up);
+  map->visit({place, place}, least.value_or(planner::base::kInfinity), [&](std::size_t i) {
+    const planner::base::Track& track = map->tracks()[i];
+    const Vec3 from = place - track.position;
+    const double free =
+        track.body.solid == nullptr ? from.norm() - track.radius : planner::verify::solid_distance(track.body, from);
+    if (!least || free < *least) least = free;
+    return *least;
+  });
 }
 
 /// To the nearest of the other vehicles at that very time.
@@ -277,6 +358,7 @@ std::vector<ClearanceSample> true_clearance(const FlightData& flight, std::size_
         if (!least || free < *least) least = free;
       }
     }
+    regard_map(flight.map.get(), flight.map_up, sample, least);
     regard_vehicles(flight, vehicle, sample, least);
     if (least) result.push_back({sample.t, *least - radius});
   }
@@ -292,8 +374,10 @@ std::vector<ClearanceSample> tracked_clearance(const FlightData& flight) {
     if (state == flight.states.begin()) continue;
     const MotionSample& newest = *std::prev(state);
     if (frame.t - newest.t > kOldestState) continue;
-    if (const auto free = nearest_track(newest.position, radius, frame, newest.t - frame.t))
-      result.push_back({newest.t, *free});
+    std::optional<double> least = nearest_track(newest.position, frame, newest.t - frame.t);
+    for (const planner::geometry::StaticMap* map : {flight.map.get(), seen_at(flight, newest.t)})
+      regard_map(map, flight.map_up, newest, least);
+    if (least) result.push_back({newest.t, *least - radius});
   }
   return result;
 }
@@ -312,6 +396,7 @@ Json report_data(const FlightData& flight, const Json* summary) {
   data["header"] = flight.header;
   data["header"].erase("shapes");
   data["header"].erase("map");
+  data["header"].erase("stands");
   data["log"] = {{"lines", flight.lines},
                  {"cut_off", flight.cut_off},
                  {"not_finite", flight.not_finite},
@@ -332,6 +417,9 @@ Json report_data(const FlightData& flight, const Json* summary) {
     data["others"].push_back(std::move(other));
   }
   data["shapes"] = shapes_json(flight.shapes);
+  const planner::base::Box part = shown_part(vehicle, flight.map_up);
+  data["map"] = map_json(flight, part);
+  data["seen"] = seen_json(flight, part);
   data["setpoints"] = motion_json(flight.setpoints, interval);
   data["obstacles"] = frames_json(flight.obstacles, interval, false);
   data["tracks"] = frames_json(flight.tracks, interval, true);

@@ -62,4 +62,26 @@ std::vector<Vec3> shape_corners(const config::Obstacle& obstacle, double t) {
   return corners;
 }
 
+std::vector<Vec3> solid_corners(const planner::base::Solid& solid) {
+  if (solid.is_hull()) return {solid.vertices().begin(), solid.vertices().end()};
+  std::vector<Vec3> corners;
+  const bool round = solid.corner() + solid.rounding() > 0.0;
+  const int around = round ? kRound : 4;
+  const int upwards = solid.rounding() > 0.0 ? kUpwards : 0;
+  for (int k = 0; k <= upwards; ++k) {
+    const double rise = 0.5 * std::numbers::pi * k / kUpwards;
+    const double beside = solid.corner() + solid.rounding() * std::cos(rise);
+    const double above = solid.half().z() + solid.rounding() * std::sin(rise);
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2.0 * std::numbers::pi * (i + 0.5) / around;  // on neither axis, where two corners meet
+      const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+      const Vec3 level(std::copysign(solid.half().x(), out.x()), std::copysign(solid.half().y(), out.y()), 0.0);
+      for (const double side : {-1.0, 1.0})
+        corners.emplace_back(solid.pose().center +
+                             solid.pose().axes * (level + beside * out + Vec3(0.0, 0.0, side * above)));
+    }
+  }
+  return corners;
+}
+
 }  // namespace jink::tools::report

@@ -3,7 +3,7 @@
 // besides its colour (a dash, a ring, a word).
 const kColors = {
   vehicle: "#0072b2", flown: "#0072b2", whole: "#bcd3e3", plan: "#009e73", blocked: "#d55e00", obstacle: "#d9a441",
-  track: "#a8478a", setpoint: "#1c2530", near: "#c03a00", other: "#3f9bd1"
+  track: "#a8478a", setpoint: "#1c2530", map: "#a9aba2", seen: "#7f97ab", near: "#c03a00", other: "#3f9bd1"
 };
 const kFlightColors = ["#0072b2", "#d55e00", "#009e73", "#a8478a", "#8a6d00", "#3f9bd1"];
 const kFlightDashes = [[], [7, 3], [2, 2.5], [8, 3, 2, 3], [4, 4], [12, 3]];

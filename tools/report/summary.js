@@ -219,10 +219,13 @@ function showLegend() {
     ["vehicle", (c) => legendMark(c, kColors.vehicle), path],
     ["other vehicles", (c) => legendMark(c, kColors.other), any((f) => f.others.length > 0)],
     [truth ? "obstacle" : "obstacle, as tracked", (c) => legendMark(c, kColors.obstacle), truth || tracks],
+    ["map", (c) => legendMark(c, kColors.map), any((f) => f.standing.length > 0)],
+    ["map, as seen", (c) => legendMark(c, kColors.seen), any((f) => f.seen.length > 0)],
     ["track", (c) => legendMark(c, kColors.track, "ring"), truth && tracks],
     [`predicted, ${kAhead} s`, (c) => legendStroke(c, kColors.track, [4, 3]), tracks],
     ["plan", (c) => legendStroke(c, kColors.plan), any((f) => f.plans.length > 0)],
     ["plan, blocked", (c) => legendStroke(c, kColors.blocked, [5, 3]), any((f) => f.plans.some(isBlocked))],
+    ["guide", (c) => legendStroke(c, kColors.plan, [2, 4]), any((f) => f.plans.some((plan) => plan.way))],
     ["flown", (c) => legendStroke(c, kColors.flown), path],
     ["still to come", (c) => legendStroke(c, kColors.whole), path],
     ["setpoint", (c) => legendMark(c, kColors.setpoint, "cross"), any((f) => f.setpoints.t.length > 0)]
@@ -243,7 +246,7 @@ function showLegend() {
 function nowRows(flight, moment) {
   const {vehicle, nearest, plan} = moment;
   const body = !nearest ? "" : nearest.body.number !== undefined ? `vehicle ${nearest.body.number}`
-    : `${moment.truth ? "obstacle" : "track"} ${nearest.body.id}`;
+    : nearest.body.id === undefined ? "map" : `${moment.truth ? "obstacle" : "track"} ${nearest.body.id}`;
   const extra = plan ? (plan.kept ? ", kept" : "") + (plan.missed ? ", late" : "") : "";
   const [mode, phase] = [flight.eventAt("mode", moment.t), flight.eventAt("phase", moment.t)];
   return [

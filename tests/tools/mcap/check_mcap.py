@@ -28,6 +28,19 @@ obstacles:
 - {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], position: [2, 3, 1]}
 """
 
+# A wall in the way that is there to be seen.
+WALL = """
+format: jink-scenario/1
+name: wall
+start: [0, 0, 1.5]
+target: [12, 0, 1.5]
+vehicle: ardrone2
+world: {min: [-5, -10, 0], max: [25, 10, 4]}
+map: [{box: [0.4, 8, 4], position: [6, 0, 2]}]
+sensing: {scan: lidar}
+obstacles: []
+"""
+
 
 def check(holds, text):
     if not holds:
@@ -146,6 +159,31 @@ def check_scenes(topics, log, summary_of_flight):
     check(abs(moved + 2 * 0.5) < 0.01, f"the track of the mover is predicted 2 s ahead: {moved:.2f} m")
 
 
+def check_map(jink, folder):
+    (folder / "wall.yaml").write_text(WALL)
+    subprocess.run([jink, "replay", folder / "wall.yaml", "--log", folder / "wall.jsonl", "--set",
+                    "horizon.generations=40"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([jink, "export", folder / "wall.jsonl", "--mcap"], check=True, stdout=subprocess.DEVNULL)
+    topics = read(folder / "wall.mcap")[0]
+    (_, scene, _), = topics["/scene/map"]
+    wall, = scene["entities"][0]["triangles"]
+    place = wall["pose"]["position"]
+    spans = [(min(p[k] for p in wall["points"]) + place[k], max(p[k] for p in wall["points"]) + place[k])
+             for k in "xyz"]
+    check(all(abs(a - b) < 1e-9 for span, wanted in zip(spans, ((5.8, 6.2), (-4, 4), (0, 4)))
+              for a, b in zip(span, wanted)), "the map's wall where it stands")
+    seen = topics["/scene/seen"]
+    check(len(seen) > 3 and seen[-1][1]["entities"][0]["triangles"], f"what was seen of it, {len(seen)} times")
+    for _, scene, _ in seen:
+        for box in scene["entities"][0]["triangles"]:
+            place = box["pose"]["position"]
+            near = [p["x"] + place["x"] for p in box["points"]]
+            on_the_ground = place["z"] < 0.5  # which a vehicle that tilts may see a little higher than it is
+            assert on_the_ground or (5.3 < min(near) and max(near) < 6.7), near
+    plans = [scene["entities"][0]["lines"] for _, scene, _ in topics["/scene/plan"]]
+    check(any(len(lines) == 2 and len(lines[1]["points"]) > 2 for lines in plans), "plans show the guide round it")
+
+
 def main(jink):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -164,6 +202,7 @@ def main(jink):
         check_summary(topics, summary, records)
         check_against_log(topics, log)
         check_scenes(topics, log, json.loads((folder / "flight.json").read_text()))
+        check_map(jink, folder)
         (folder / "bad.jsonl").write_text("hello\n")
         bad = subprocess.run([jink, "export", folder / "bad.jsonl", "--mcap", folder / "bad.mcap"], capture_output=True,
                              text=True, check=False)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "tests/support/temporary_folder.hpp"
@@ -101,6 +102,39 @@ TEST(FlightFigure, PutsPathObstacleAndPlanWhereTheLogSays) {
       EXPECT_NEAR(view->frame->height / (view->y_range->second - view->y_range->first), across, 1e-9);
     }
   }
+}
+
+TEST(FlightFigure, ShowsTheMapWhatOfItWasSeenAndTheGuide) {
+  const Json wall{{"prism", {0.5, 1, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}};
+  std::istringstream lines(log_text());
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    Json record = Json::parse(line);
+    if (record["type"] == "header")
+      record["stands"] = Json::array({Json::array({8, -2, 2, 2.3, wall}), Json::array({900, 0, 2, 2.3, wall})});
+    if (record["type"] == "plan") record["from"] = {{"start", record["t"]}, {"way", {{14, 1, 1.5}, {20, 0, 1.5}}}};
+    text += record.dump() + "\n";
+  }
+  const auto seen = [](double t, const Json& added, int number) {
+    const Json none = Json::array();
+    return Json{{"type", "seen"}, {"t", t}, {"number", number}, {"origin", {0, 0, 0}}, {"added", Json::array({added})},
+                {"removed", none}}
+               .dump() +
+           "\n";
+  };
+  text += seen(2.0, {38, -10, 5, 39, -5, 9}, 1) + seen(8.0, {38, -15, 5, 39, -10, 9}, 2);
+  const support::Folder folder;
+  const jink::tools::figures::Panel above = figure_of(folder, text, 5.5).panels[0];
+  const Extent map = extent(above, "map"), part = extent(above, "map, as seen"), guide = extent(above, "guide");
+  EXPECT_NEAR(map.left, 7.5, 1e-6);
+  EXPECT_NEAR(map.right, 8.5, 1e-6) << "and nothing of what is far off";
+  EXPECT_NEAR(map.low, -3.0, 1e-6);
+  EXPECT_NEAR(part.left, 7.6, 1e-6);
+  EXPECT_NEAR(part.low, -2.0, 1e-6) << "as far as it had been seen by then";
+  EXPECT_NEAR(guide.left, 10.8, 1e-6) << "from where the plan of that moment begins";
+  EXPECT_NEAR(guide.right, 20.0, 1e-6);
+  EXPECT_NEAR(guide.high, 1.0, 1e-6);
+  EXPECT_EQ(find(figure_of(folder, text, 1.0).panels[0], "map, as seen"), nullptr);
 }
 
 TEST(FlightFigure, ShowsMeasuresOverTimeWithTheEventsThatMatter) {

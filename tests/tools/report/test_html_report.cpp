@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -13,9 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "planner/base/solid.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/report/flight_data.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/report/shape_corners.hpp"
 
 namespace jink::tools::report {
 namespace {
@@ -124,6 +128,81 @@ std::string team() {
           record({{"type", "truth"}, {"t", t}, {"vehicle", k}, {"p", k == 0 ? a : b}, {"v", {k == 0 ? 2 : -2, 0, 0}}});
   }
   return log;
+}
+
+// A wall beside the way, a ball, and something far away; 1 m higher in the log than the map has it.
+TEST(FlightReport, ShowsTheKnownMapAndTheGuide) {
+  Json header = Json::parse(kHeader);
+  const Json box{{"prism", {4, 0.5, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}};
+  header["map"] =
+      Json::array({Json::array({10, 3, 1, 4.5, box}), Json::array({2, -4, 1, 0.5}), Json::array({500, 0, 0, 1.0})});
+  std::string log = record(header) + event(0.0, "phase", "flying");
+  for (int i = 0; i <= 100; ++i)
+    log +=
+        motion("truth", 0.1 * i, {0.2 * i, 0, 1.5}, {2, 0, 0}) + motion("state", 0.1 * i, {0.2 * i, 0, 1.5}, {2, 0, 0});
+  Json led = Json::parse(plan(1.0, 5.0, "progresses"));
+  led["from"] = {{"start", 1.0}, {"way", {{4, 1, 1.5}, {9, 0, 1.5}}}, {"map", {{"up", 1.0}}}};
+  const Json data = report_of(log + record(led));
+  ASSERT_EQ(data["map"].size(), 2U);
+  EXPECT_FALSE(data["header"].contains("map"));
+  EXPECT_EQ(data["map"][0]["p"], (Json{10.0, 3.0, 2.0}));
+  EXPECT_EQ(data["map"][0]["shape"]["vertices"].size(), 24U);
+  EXPECT_EQ(data["map"][0]["shape"]["faces"].size(), 36U);
+  EXPECT_EQ(data["map"][1]["shape"], Json());
+  EXPECT_EQ(data["plans"][0]["way"], (Json{4.0, 1.0, 1.5, 9.0, 0.0, 1.5}));
+  // Past the wall, whose face is at y = 2.5, at a distance of 2.5 − 0.25.
+  EXPECT_EQ(data["clearance"]["from"], "true");
+  EXPECT_NEAR(data["clearance"]["min"]["d"].get<double>(), 2.25, 1e-3);
+  header["map"][0][4]["prism"].erase(16);
+  EXPECT_NE(error_of(record(header)).find("prism"), std::string::npos);
+}
+
+// A box of cells comes, stays while another comes beside it, and goes.
+TEST(FlightReport, ShowsWhatHadBeenSeenAndWhen) {
+  const auto seen = [](double t, int number, const Json& added, const Json& removed) {
+    return record({{"type", "seen"},
+                   {"t", t},
+                   {"number", number},
+                   {"origin", {0, 0, 1}},
+                   {"added", added},
+                   {"removed", removed}});
+  };
+  const Json first = Json::array({10, 5, 0, 12, 6, 5}), second = Json::array({20, 5, 0, 21, 6, 1});
+  std::string log = kHeader + seen(1.0, 1, Json::array({first}), Json::array());
+  for (int i = 0; i <= 10; ++i) log += motion("state", i, {2.0 * i, 0, 1.5}, {2, 0, 0});
+  log += tracks(2.0, {4, 9, 1.5}, {0, 0, 0}, 0.5) + seen(3.0, 2, Json::array({second}), Json::array());
+  log += seen(4.0, 3, Json::array(), Json::array({second})) + seen(6.0, 4, Json::array(), Json::array({first}));
+  log += seen(6.1, 5, Json::array({second}), Json::array()) + seen(6.2, 6, Json::array(), Json::array({second}));
+  const Json data = report_of(log);
+  ASSERT_EQ(data["seen"].size(), 2U);
+  EXPECT_EQ(data["seen"][0]["p"], (Json{2.2, 1.1, 1.5}));
+  EXPECT_EQ(data["seen"][0]["box"], (Json{0.4, 0.2, 1.0}));
+  EXPECT_EQ(data["seen"][0]["from"], 1.0);
+  EXPECT_EQ(data["seen"][0]["until"], 6.0);
+  EXPECT_EQ(data["seen"][1]["from"], 3.0);
+  EXPECT_EQ(data["seen"][1]["until"], 4.0);
+  // Nearer than the track: from (4, 0, 1.5) to the box's corner at (2.4, 1.0).
+  EXPECT_EQ(data["clearance"]["from"], "tracks");
+  EXPECT_NEAR(data["clearance"]["min"]["d"].get<double>(), std::hypot(1.6, 1.0) - 0.25, 1e-3);
+  EXPECT_NE(error_of(kHeader + seen(1.0, 1, Json::array(), Json::array({first}))).find("removed"), std::string::npos);
+}
+
+TEST(SolidCorners, ReachAsFarAsTheSolid) {
+  using planner::base::Solid;
+  Solid::Pose pose{{0.3, -0.2, 0.5}, {}};
+  pose.axes = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const auto& solid :
+       {Solid::box({1, 2, 3}, pose), Solid::cylinder(0.5, 4.0, pose), Solid::capsule(0.3, {0, 0, 0}, {1, 2, 0}),
+        Solid::prism({1, 0.5, 0.2}, 0.3, 0.1, pose), Solid::hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})}) {
+    const std::vector<Vec3> corners = solid_corners(*solid);
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 direction = Vec3(std::sin(1.0 + i), std::cos(3.0 * i), std::sin(7.0 * i)).normalized();
+      double most = -planner::base::kInfinity;
+      for (const Vec3& corner : corners) most = std::max(most, direction.dot(corner));
+      EXPECT_LE(most, solid->extent(direction) + 1e-9);
+      EXPECT_GE(most, solid->extent(direction) - 0.01);
+    }
+  }
 }
 
 TEST(Thin, KeepsFirstLastAndWhatIsFarEnoughApart) {
