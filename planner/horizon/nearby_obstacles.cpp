@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/geometry/static_map.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -94,16 +95,6 @@ class PathMotion {
   double fastest_;
 };
 
-/// A solid's box, and all that is within `kept`, m, of its faces.
-base::Box box_around(const PlacedSolid& solid, const Vec3& center, double kept) {
-  base::Box box;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    box.min[axis] = center[axis] - solid.extent(-Vec3::Unit(axis)) - kept;
-    box.max[axis] = center[axis] + solid.extent(Vec3::Unit(axis)) + kept;
-  }
-  return box;
-}
-
 /// The solid of what moves so, during step n, to be kept `soft` away from its centre's sphere.
 template <typename Motion>
 NearbySolid solid_during(const Motion& motion, double step, std::size_t n, double soft) {
@@ -114,13 +105,16 @@ NearbySolid solid_during(const Motion& motion, double step, std::size_t n, doubl
   const Vec3 to = motion.position(end);
   NearbySolid solid{{body, from, begin}, {body, to, end}, motion.radius(), {}};
   const double kept = soft - solid.radius + kSlack;
-  solid.keep_out = united(box_around(solid.from, from, kept), box_around(solid.from, to, kept));
-  if (body.yaw_rate != 0.0) solid.keep_out = {Vec3::Constant(-base::kInfinity), Vec3::Constant(base::kInfinity)};
+  if (body.yaw_rate != 0.0) {
+    solid.keep_out = {Vec3::Constant(-base::kInfinity), Vec3::Constant(base::kInfinity)};
+    return solid;
+  }
+  base::Track there;
+  there.position = from;
+  there.body = body;
+  const base::Box box = geometry::grown(geometry::box_around(there), kept);
+  solid.keep_out = united(box, {box.min + (to - from), box.max + (to - from)});
   return solid;
-}
-
-PlainBox plain(const base::Box& box) {
-  return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
 }
 
 }  // namespace
@@ -191,7 +185,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       if (distance >= obstacle.near_squared) continue;
       if (motion.body().solid != nullptr) {
         const NearbySolid solid = solid_during(motion, step, n, obstacle.soft);
-        if (!plain(where[n]).meets(solid.keep_out)) continue;
+        if (geometry::distance(where[n], solid.keep_out) > 0.0) continue;
         obstacle.solid = static_cast<int>(solids_.size());
         solids_.push_back(solid);
       }
@@ -212,11 +206,10 @@ void NearbyObstacles::add_standing(const base::Track& track, const Clearance& cl
   obstacle.near = obstacle.soft + kSlack;
   obstacle.near_squared = obstacle.near * obstacle.near;
   if (squared_distance(track.position, everywhere) >= obstacle.near_squared) return;
-  base::Box box{track.position.array() - obstacle.near, track.position.array() + obstacle.near};
-  const PlacedSolid solid(track.body, track.position, 0.0);
-  if (!solid.is_none()) box = box_around(solid, track.position, obstacle.near - track.radius);
-  if (std::none_of(where.begin(), where.end(), [&](const base::Box& part) { return plain(part).meets(box); })) return;
-  if (!solid.is_none()) {
+  const base::Box box = geometry::grown(geometry::box_around(track), obstacle.near - track.radius);
+  const auto meets = [&box](const base::Box& part) { return geometry::distance(part, box) == 0.0; };
+  if (std::none_of(where.begin(), where.end(), meets)) return;
+  if (const PlacedSolid solid(track.body, track.position, 0.0); !solid.is_none()) {
     obstacle.solid = static_cast<int>(solids_.size());
     solids_.push_back({solid, solid, track.radius, box});
   }

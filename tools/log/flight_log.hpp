@@ -42,10 +42,9 @@ struct FlightLogOptions {
 /// truth {vehicle, p, v} for each, by number from 0; state {p, v, armed, mode}, tracks {tracks:
 /// [{id, p, v, a, radius, position_sigma, velocity_sigma, age}]}, plan {path: [[t, x, y, z], ...], ms, status, ...,
 /// from}, setpoint {p, v, a, yaw}, event {name, detail}, and before a plan that sees another map than the one before it
-/// seen {number, origin, added: [[six integers], ...], removed: likewise}: boxes of cells
-/// from the first three up to the last three (bridge::map::Seen; a cell is Occupancy::kCell wide). Vectors are [x, y,
-/// z], ENU, m. `t` of truth and obstacles is scenario time, of the others the companion's clock; in `replay` the two
-/// are one.
+/// seen {number, origin, added: [[six integers], ...], removed: likewise}: boxes of cells from the first three up to
+/// the last three (bridge::map::Seen; a cell is Occupancy::kCell wide). Vectors are [x, y, z], ENU, m. `t` of truth and
+/// obstacles is scenario time, of the others the companion's clock; in `replay` the two are one.
 ///
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
@@ -56,8 +55,7 @@ struct FlightLogOptions {
 /// ...] of the tracks that count among what stands, forecasts: [{track, radius, position_sigma, velocity_sigma,
 /// plain_until, bounces: [begin, velocity, min, max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in
 /// a row), paths: [{id, offset, radius, margin, position_sigma, velocity_sigma, age, until, points: [[t, x, y, z],
-/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {seen, where: [min, max], up, floor,
-/// sigma},
+/// ...]}, ...] of the team's other vehicles (planner::KnownPath), map: {seen, where: [min, max], up, floor, sigma},
 /// what of the header's map, or of that and the boxes of the `seen` record of that number, was in view
 /// (bridge::companion::MapView), and previous: [[t, x, y, z], ...]}, all valid at `start`, the previous path's times
 /// from there on. A number in it that is not finite is the text "inf", "-inf" or "nan". With the header's seed and

@@ -19,12 +19,12 @@ using jink::tools::figures::Look;
 using jink::tools::figures::Panel;
 using jink::tools::figures::Series;
 
-constexpr double kPad = 2.0;     // m, before and behind the flown way
-constexpr double kBeside = 3.5;  // m, beside it
-constexpr std::string_view kMapEdge = "#8d8f86";
+constexpr double kPad = 2.0;         // m, before and behind the flown way
+constexpr double kBeside = 3.5;      // m, beside it
 constexpr double kTrail = 2.0;       // s, of an obstacle's way before and after the instant
 constexpr double kAheadStep = 0.1;   // s
 constexpr double kMostExtent = 1e5;  // m; nothing that flies a log's length goes further
+constexpr std::string_view kMapEdge = "#8d8f86";
 constexpr std::array<const char*, 3> kAxes{"East (m)", "North (m)", "Up (m)"};
 
 std::string text_of(std::string_view text) {

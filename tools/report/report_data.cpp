@@ -174,7 +174,7 @@ Json seen_json(const FlightData& flight, const planner::base::Box& part) {
     std::map<Corners, std::size_t> now;
     for (std::size_t i = 0; i < record.map->tracks().size(); ++i) {
       const planner::base::Box& box = record.map->box(i);
-      if ((box.min.array() > part.max.array()).any() || (box.max.array() < part.min.array()).any()) continue;
+      if (planner::geometry::distance(box, part) > 0.0) continue;
       const Corners corners{box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
       if (const auto known = before.find(corners); known != before.end()) {
         now.insert(before.extract(known));

@@ -703,8 +703,10 @@ std::vector<base::Track> random_standing(base::RandomStream& random) {
   for (int i = 0; i < 400; ++i) {
     base::Track track =
         sphere({random.uniform(-1.0, 7.0), random.uniform(-3.0, 3.0), random.uniform(0.5, 4.0)}, Vec3::Zero(), 0.2);
-    if (i % 3 > 0) track.body.solid = base::Solid::box(random_vector(random, 0.3).cwiseAbs(), {});
-    if (i % 3 > 0) track.radius = track.body.solid->reach();
+    if (i % 3 > 0) {
+      track.body.solid = base::Solid::box(random_vector(random, 0.3).cwiseAbs(), {});
+      track.radius = track.body.solid->reach();
+    }
     standing.push_back(track);
   }
   return standing;
