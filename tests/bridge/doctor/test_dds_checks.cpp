@@ -69,6 +69,16 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+// The check of a topic with a writer; again where that was not found within the window, as on a busy machine.
+Check inspect_written(
+    const Mission& mission, const std::string& topic, const std::function<void()>& act = [] {}) {
+  constexpr int kMost = 5;
+  Check check;
+  for (int n = 0; n < kMost && (n == 0 || check.finding == "no writer"); ++n)
+    check = find(inspect(mission, act), topic);
+  return check;
+}
+
 TEST(DdsInspect, IsPleasedWithAWriterWhoseDataArrive) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
@@ -133,10 +143,9 @@ TEST(DdsInspect, LooksForCloudsWhereTheMissionNeedsThem) {
   for (const auto& [given, frame, age, finding] :
        {Case{points, "camera_link", 0.1, "1 writer,"}, Case{points, "odom", 0.1, "frame_id 'odom'"},
         Case{{}, "camera_link", 0.1, "no point in it"}, Case{points, "camera_link", 2.0, "stamp 2.0"}}) {
-    const Check check =
-        find(inspect(mission, [&, &given = given, &frame = frame,
-                               &age = age] { (void)writer.publish(given, dds::system_time() - age, frame); }),
-             dds::kCloudTopic);
+    const Check check = inspect_written(mission, dds::kCloudTopic, [&, &given = given, &frame = frame, &age = age] {
+      (void)writer.publish(given, dds::system_time() - age, frame);
+    });
     EXPECT_TRUE(has(check.finding, finding)) << check.finding;
     EXPECT_EQ(check.level,
               frame == "camera_link" && age < 1.0 && !given.empty() ? Check::Level::kOk : Check::Level::kFault);
@@ -147,8 +156,8 @@ TEST(DdsInspect, LooksForCloudsWhereTheMissionNeedsThem) {
 TEST(DdsInspect, NamesTheOffsetOfAClock) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  const auto checks = inspect(mission, [&] { (void)writer.publish({}, dds::system_time() + 3600.0); });
-  const Check check = find(checks, dds::kTracksTopic);
+  const Check check =
+      inspect_written(mission, dds::kTracksTopic, [&] { (void)writer.publish({}, dds::system_time() + 3600.0); });
   EXPECT_EQ(check.level, Check::Level::kWarning);
   EXPECT_TRUE(has(check.finding, "stamps -3")) << check.finding;
   EXPECT_TRUE(has(check.remedy, "clock"));
@@ -157,13 +166,13 @@ TEST(DdsInspect, NamesTheOffsetOfAClock) {
 TEST(DdsInspect, NamesFramesAndPayloadsThatCannotBeUsed) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter writer(mission.dds_domain);
-  Check check = find(inspect(mission, [&] { (void)writer.publish({}, 1.0, "base_link"); }), dds::kTracksTopic);
+  Check check = inspect_written(mission, dds::kTracksTopic, [&] { (void)writer.publish({}, 1.0, "base_link"); });
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_TRUE(has(check.finding, "base_link")) << check.finding;
   const Mission other = tracks_mission(own_domain());
   DdsParticipant peer(other.dds_domain);
   PayloadWriter broken(peer, dds::kTracksTopic, dds::kTracksType);
-  check = find(inspect(other, [&] { (void)broken.write(Payload{0, 1, 0, 0, 7}); }), dds::kTracksTopic);
+  check = inspect_written(other, dds::kTracksTopic, [&] { (void)broken.write(Payload{0, 1, 0, 0, 7}); });
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_TRUE(has(check.finding, "layout")) << check.finding;
 }
@@ -171,7 +180,7 @@ TEST(DdsInspect, NamesFramesAndPayloadsThatCannotBeUsed) {
 TEST(DdsInspect, SeesAMatchWithoutData) {
   const Mission mission = tracks_mission(own_domain());
   DdsTrackWriter silent(mission.dds_domain);
-  const Check check = find(inspect(mission), dds::kTracksTopic);
+  const Check check = inspect_written(mission, dds::kTracksTopic);
   EXPECT_EQ(check.level, Check::Level::kFault);
   EXPECT_EQ(check.finding, "1 writer matched, but no data");
   EXPECT_TRUE(has(check.remedy, "UDP") && has(check.remedy, "--ipc=host"));
