@@ -9,21 +9,6 @@
 #include "planner/horizon/path_check.hpp"
 
 namespace jink::bridge::companion {
-namespace {
-
-// What climbs and what stops has nowhere to go.
-void lead(planner::horizon::Guide& guide, PlanJob& job, prediction::Obstacles& obstacles,
-          std::shared_ptr<const planner::geometry::StaticMap>& guided_by) {
-  if (job.goal != Goal::Kind::kWaypoint) return;
-  guide.lead(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma});
-  if (planner::horizon::is_valid(job.request)) guided_by = job.map.map;
-  job.standing.assign(guide.standing().begin(), guide.standing().end());
-  planner::horizon::set_apart(job.standing, obstacles.tracks, obstacles.standing);
-  set_obstacles(job, obstacles);
-}
-
-}  // namespace
-
 void MapView::append_to(std::vector<planner::base::Track>& tracks) const {
   if (map == nullptr) return;
   const std::size_t before = tracks.size();
@@ -36,13 +21,35 @@ void MapView::append_to(std::vector<planner::base::Track>& tracks) const {
   for (std::size_t i = before; i < tracks.size(); ++i) tracks[i].position_sigma = sigma;
 }
 
-ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
+JobPlanner::JobPlanner(const PlannerTaskSettings& settings)
     : settings_(settings),
+      planner_(settings.horizon, settings.optimizer),
+      guided_(planner_, planner::horizon::Guide::Knowledge::kSensed),
+      pool_(settings.threads) {}
+
+// What climbs and what stops has nowhere to go.
+planner::verify::Plan JobPlanner::plan(PlanJob& job, const planner::base::Budget& budget) {
+  const prediction::Obstacles obstacles = obstacles_of(job, settings_.horizon);
+  set_obstacles(job, obstacles);
+  planner::verify::Plan plan;
+  if (job.goal == Goal::Kind::kWaypoint) {
+    if (planner::horizon::is_valid(job.request)) guided_by_ = job.map.map;
+    plan = guided_.plan(job.request, job.start, {job.map.map.get(), job.map.up, job.map.floor, job.map.sigma},
+                        job.previous, settings_.seed, job.number, budget, pool_);
+    job.standing.assign(guided_.standing().begin(), guided_.standing().end());
+  } else {
+    plan = planner_.plan(job.request, job.previous, settings_.seed, job.number, budget, pool_);
+  }
+  forget_obstacles(job);
+  return plan;
+}
+
+ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
+    : deadline_ms_(settings.horizon.deadline_ms),
+      generations_(settings.horizon.generations),
       clock_(clock),
       done_(done),
-      guide_(settings.horizon, planner::horizon::Guide::Knowledge::kSensed),
-      planner_(settings.horizon, settings.optimizer),
-      pool_(settings.threads),
+      planner_(settings),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 ThreadedPlanner::~ThreadedPlanner() {
@@ -86,16 +93,11 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     }
     try {
       const double begun = clock_.now();
-      prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
-      set_obstacles(result.job, obstacles);
-      lead(guide_, result.job, obstacles, guided_by_);
-      const auto deadline = std::chrono::duration<double, std::milli>(settings_.horizon.deadline_ms);
+      const auto deadline = std::chrono::duration<double, std::milli>(deadline_ms_);
       const planner::base::Budget budget{
-          settings_.horizon.generations,
+          generations_,
           std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(deadline)};
-      result.plan =
-          planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
-      forget_obstacles(result.job);
+      result.plan = planner_.plan(result.job, budget);
       result.ms = 1e3 * (clock_.now() - begun);
       const std::scoped_lock lock(mutex_);
       result_ = std::move(result);
@@ -108,23 +110,13 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
 }
 
 VirtualPlanner::VirtualPlanner(const PlannerTaskSettings& settings, double latency)
-    : settings_(settings),
-      latency_(latency),
-      guide_(settings.horizon, planner::horizon::Guide::Knowledge::kSensed),
-      planner_(settings.horizon, settings.optimizer),
-      pool_(settings.threads) {}
+    : generations_(settings.horizon.generations), latency_(latency), planner_(settings) {}
 
 void VirtualPlanner::start(PlanJob job) {
   assert(!result_);
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
-  prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
-  set_obstacles(result.job, obstacles);
-  lead(guide_, result.job, obstacles, guided_by_);
-  const planner::base::Budget budget{settings_.horizon.generations, planner::base::Budget::Time::max()};
-  result.plan =
-      planner_.plan(result.job.request, result.job.previous, settings_.seed, result.job.number, budget, pool_);
-  forget_obstacles(result.job);
+  result.plan = planner_.plan(result.job, {generations_, planner::base::Budget::Time::max()});
   result.ms = 1e3 * latency_;
 }
 

@@ -17,7 +17,7 @@
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/setpoints/tracking_offset.hpp"
 #include "planner/geometry/static_map.hpp"
-#include "planner/horizon/guide.hpp"
+#include "planner/horizon/guided_planner.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 
 namespace jink::bridge::companion {
@@ -54,7 +54,8 @@ struct PlanJob {
   std::vector<std::uint64_t> standing;  ///< ids of the tracks that count among what stands (PathRequest::standing)
   planner::base::TimedPath previous;    ///< times from `start` on
   Goal::Kind goal = Goal::Kind::kWaypoint;
-  Vec3 target = Vec3::Zero();  ///< of the goal; the guide may lead to another first, which is the request's
+  bool visit = false;          ///< of the goal
+  Vec3 target = Vec3::Zero();  ///< likewise; the guide may lead to another first, which is the request's
   std::uint64_t number = 0;
   double begun = 0.0;
   double start = 0.0;
@@ -111,6 +112,21 @@ struct PlannerTaskSettings {
   int threads = 0;  ///< 0: one for each core
 };
 
+/// Makes the plans of one flight, guided to its waypoints. Not thread-safe.
+class JobPlanner {
+ public:
+  explicit JobPlanner(const PlannerTaskSettings& settings);
+  /// The job's request becomes the one that was planned for, without its obstacles.
+  planner::verify::Plan plan(PlanJob& job, const planner::base::Budget& budget);
+
+ private:
+  PlannerTaskSettings settings_;
+  planner::horizon::HorizonPlanner planner_;
+  planner::horizon::GuidedPlanner guided_;
+  std::shared_ptr<const planner::geometry::StaticMap> guided_by_;  // the guide knows its map by where it is
+  planner::base::WorkerPool pool_;
+};
+
 /// Plans in a thread of its own with a pool of `threads`, until the generations are done or the deadline passes.
 class ThreadedPlanner final : public PlannerTask {
  public:
@@ -119,20 +135,18 @@ class ThreadedPlanner final : public PlannerTask {
   ~ThreadedPlanner() override;
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override;
-  [[nodiscard]] double latency() const override { return 1e-3 * settings_.horizon.deadline_ms + kHandling; }
+  [[nodiscard]] double latency() const override { return 1e-3 * deadline_ms_ + kHandling; }
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:
   static constexpr double kHandling = 0.03;  // s: the last cycle after the deadline, and a turn of the loop
   void work(const std::stop_token& stop);
 
-  PlannerTaskSettings settings_;
+  const double deadline_ms_;
+  const int generations_;
   const base::Clock& clock_;
   base::Notifier* done_;
-  planner::horizon::Guide guide_;
-  std::shared_ptr<const planner::geometry::StaticMap> guided_by_;  // the guide knows its map by where it is
-  planner::horizon::HorizonPlanner planner_;
-  planner::base::WorkerPool pool_;
+  JobPlanner planner_;
   mutable std::mutex mutex_;  // guards job_, result_, failure_ and busy_
   std::condition_variable_any wake_;
   std::optional<PlanJob> job_;
@@ -152,12 +166,9 @@ class VirtualPlanner final : public PlannerTask {
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:
-  PlannerTaskSettings settings_;
-  double latency_;
-  planner::horizon::Guide guide_;
-  std::shared_ptr<const planner::geometry::StaticMap> guided_by_;  // the guide knows its map by where it is
-  planner::horizon::HorizonPlanner planner_;
-  planner::base::WorkerPool pool_;
+  const int generations_;
+  const double latency_;
+  JobPlanner planner_;
   std::optional<PlanResult> result_;
 };
 

@@ -39,7 +39,10 @@ int GridSearch::node_at(const Eigen::Vector3i& place, const Standing& standing) 
   node.place = place;
   const Vec3 where = at(place);
   node.cost = base::kInfinity;
-  node.spare = query_.volume.contains(where) && place.cwiseAbs().maxCoeff() < kFarthest
+  const bool closed = std::any_of(query_.closed.begin(), query_.closed.end(), [&](const GridQuery::Column& column) {
+    return (where - column.center).head<2>().norm() < column.radius;
+  });
+  node.spare = !closed && query_.volume.contains(where) && place.cwiseAbs().maxCoeff() < kFarthest
                    ? standing.distance(where, query_.radius + query_.wanted) - query_.radius
                    : -base::kInfinity;
   node.done = node.spare < query_.least;

@@ -24,6 +24,12 @@ struct GridQuery {
   double wanted = 0.0;       ///< the same: where less is kept a way costs more, up to 11 times; above `least`
   double steepness = 1.0;    ///< speed / climb: a metre of height costs so many, if more than the way
   double cell = 0.5;         ///< between two places of the grid
+  /// Upright, of any height.
+  struct Column {
+    Vec3 center = Vec3::Zero();  ///< of which z does not count
+    double radius = 0.0;         ///< on the level
+  };
+  std::vector<Column> closed{};  ///< in which no place is
 };
 
 /// One search after another. Same bits for the same calls.

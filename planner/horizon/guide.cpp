@@ -36,6 +36,12 @@ constexpr double kSlowestShare = 0.3;    // of the cruise speed, in the narrowes
 constexpr int kSides = 8;                // directions on the level, in which there may be more room
 constexpr double kAside = 1.3;           // times what is lacking, so far that way
 constexpr int kHalvings = 6;             // of a leg, to the farthest place in sight
+constexpr double kGateAhead = 10.0;      // m, along a way, within which it may be closed for a while
+constexpr double kGateMore = 0.25;       // m, that a column is wider than the gate that it closes
+constexpr double kDetour = 1.5;          // times as long as the way, that another may be
+constexpr int kOthers = 10;              // times settings.guide_places, for them in a search that may take its time
+constexpr int kMostTries = 6;            // to find others
+constexpr std::size_t kMostOthers = 2;   // that are kept
 constexpr int kMissed = 8;               // places out of sight, after which none farther is looked at
 
 Vec3 nearest_on_line(const Vec3& place, const Vec3& from, const Vec3& to) {
@@ -51,6 +57,27 @@ double length_of(std::span<const Vec3> way) {
   return length;
 }
 
+// Those of each leg that are not farther than `most` along the way.
+template <typename Visit>
+void for_each_place(std::span<const Vec3> way, double most, const Visit& visit) {
+  double looked = 0.0;
+  for (std::size_t i = 1; i < way.size() && looked < most; ++i) {
+    const double length = (way[i] - way[i - 1]).norm();
+    for (double at = 0.0; at <= length && looked + at < most; at += kSample)
+      visit(Vec3(way[i - 1] + at / std::max(length, kSample) * (way[i] - way[i - 1])));
+    looked += length;
+  }
+}
+
+Vec3 place_along(std::span<const Vec3> way, double along) {
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double length = (way[i] - way[i - 1]).norm();
+    if (along <= length && length > 0.0) return way[i - 1] + along / length * (way[i] - way[i - 1]);
+    along -= length;
+  }
+  return way.back();
+}
+
 // What swings rests where it turns: there its acceleration tells. In noise that is no more than a guess.
 bool rests(const base::Track& track) {
   return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + kSureSigmas * track.velocity_sigma &&
@@ -59,31 +86,73 @@ bool rests(const base::Track& track) {
 
 }  // namespace
 
+double left_along(std::span<const Vec3> way, const Vec3& place) {
+  double least = (way.back() - place).norm();
+  double left = least;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const Vec3 nearest = nearest_on_line(place, way[i - 1], way[i]);
+    const double beside = (nearest - place).norm();
+    if (beside >= least) continue;
+    least = beside;
+    left = beside + (way[i] - nearest).norm() + length_of(way.subspan(i));
+  }
+  return left;
+}
+
 void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   narrow_ = false;
   if (!settings_.guide || !is_valid(request)) return;
   notice(request, now, map);
   if ((request.target - target_).squaredNorm() > 0.0) {
     target_ = request.target;
-    way_.clear();
+    begin_way({});
     search_ = {};
     search_again_ = now;
   }
-  if (standing_.empty() ||
-      standing_.is_clear(request.position, request.target, request.vehicle.radius + request.margin)) {
-    way_.clear();
+  const bool holds = !way_.empty() && pass(request.position) && is_open(way_, request);
+  if (!(holds && taken_) && (standing_.empty() || standing_.is_clear(request.position, request.target,
+                                                                     request.vehicle.radius + request.margin))) {
+    if (!way_.empty()) begin_way({});
     search_ = {};
+    look_for_others(request);
     return;
   }
-  if (way_.empty() || !pass(request.position) || !is_open(way_, request)) look_for_way(request, now);
+  if (!holds) look_for_way(request, now);
   if (way_.empty()) return;
-  slow_down(request);
+  look_for_others(request);
   const double left = (way_.front() - request.position).norm() + length_of(way_);
   request.stuck = request.stuck && progress_.stalls(now, left);
-  const std::size_t leg = lead_ahead(request);
+  lead_along(way_, request);
+}
+
+void Guide::lead_along(std::size_t other, PathRequest& request) {
+  request.stuck = false;
+  lead_along(others_[other], request);
+}
+
+void Guide::lead_along(std::span<const Vec3> way, PathRequest& request) {
+  narrow_ = false;
+  slow_down(way, request);
+  const std::size_t leg = lead_ahead(way, request);
   request.visit = request.visit && request.target == target_;
-  request.way.assign(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg));
+  request.way.assign(way.begin() + 1, way.begin() + static_cast<std::ptrdiff_t>(leg));
   request.way.push_back(request.target);
+}
+
+void Guide::take(std::size_t other) {
+  begin_way(std::vector<Vec3>(others_[other]));
+  taken_ = true;
+}
+
+void Guide::begin_way(std::vector<Vec3> way) {
+  way_ = std::move(way);
+  progress_.begin_anew();
+  taken_ = false;
+  wants_others_ = false;
+  other_search_ = {};
+  tries_ = 0;
+  closed_.clear();
+  others_.clear();
 }
 
 void Guide::notice(const PathRequest& request, double now, const MapPlace& map) {
@@ -136,39 +205,109 @@ void Guide::watch(const PathRequest& request, double now) {
   });
 }
 
-// On a coarse grid, then on a fine one. What was found is still led along meanwhile.
 void Guide::look_for_way(const PathRequest& request, double now) {
   if (now < search_again_) return;
-  const double wanted = std::max(request.margin, settings_.guide_margin) + settings_.seed_clearance;
-  const base::VehicleLimits& vehicle = request.vehicle;
-  const GridQuery query{request.position,
-                        request.target,
-                        request.volume,
-                        vehicle.radius,
-                        settings_.guide_margin,
-                        wanted,
-                        vehicle.cruise_speed / vehicle.max_climb,
-                        settings_.guide_cell};
-  if (search_.state() != GridSearch::State::kSearching) search_.begin(query);
-  const int places = knowledge_ == Knowledge::kWhole ? std::numeric_limits<int>::max() : settings_.guide_places;
-  GridSearch::State state = search_.advance(standing_, places);
-  if (state == GridSearch::State::kNone && search_.query().cell == settings_.guide_cell) {
-    GridQuery fine = query;
-    fine.cell *= kFineGrid;
-    search_.begin(fine);
-    state = search_.advance(standing_, places);
-  }
+  const GridSearch::State state = advance(search_, request, {});
   if (state == GridSearch::State::kSearching) return;
   if (state == GridSearch::State::kNone)
     search_again_ = knowledge_ == Knowledge::kWhole ? base::kInfinity : now + kSearchAgain;
-  way_ = state == GridSearch::State::kFound ? pulled_tight(search_.way(), request) : std::vector<Vec3>();
+  begin_way(state == GridSearch::State::kFound ? pulled_tight(search_.way(), request, {}) : std::vector<Vec3>());
   search_ = {};
-  progress_.begin_anew();
   if (!way_.empty() && !is_open(way_, request)) way_.clear();  // what stands has changed since
 }
 
-// From each place to the farthest in sight that is no nearer to anything than the places between them are.
-std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const {
+// On a coarse grid, then on a fine one.
+GridSearch::State Guide::advance(GridSearch& search, const PathRequest& request,
+                                 std::span<const GridQuery::Column> closed) const {
+  const base::VehicleLimits& vehicle = request.vehicle;
+  const double wanted = std::max(request.margin, settings_.guide_margin) + settings_.seed_clearance;
+  GridQuery query{request.position,
+                  request.target,
+                  request.volume,
+                  vehicle.radius,
+                  settings_.guide_margin,
+                  wanted,
+                  vehicle.cruise_speed / vehicle.max_climb,
+                  settings_.guide_cell,
+                  {closed.begin(), closed.end()}};
+  if (search.state() != GridSearch::State::kSearching) search.begin(query);
+  int places = settings_.guide_places;
+  if (knowledge_ == Knowledge::kWhole) places = closed.empty() ? std::numeric_limits<int>::max() : kOthers * places;
+  GridSearch::State state = search.advance(standing_, places);
+  if (state == GridSearch::State::kNone && search.query().cell == settings_.guide_cell) {
+    query.cell *= kFineGrid;
+    search.begin(query);
+    state = search.advance(standing_, places);
+  }
+  return state;
+}
+
+// Ways through another gate: the gates of those that are known are closed, one after the other; a wide one with several
+// columns.
+void Guide::look_for_others(const PathRequest& request) {
+  if (!wants_others_) return;
+  std::erase_if(others_, [&](std::vector<Vec3>& other) {
+    other.front() = request.position;
+    return !is_open(other, request);
+  });
+  if (tries_ >= kMostTries || others_.size() >= kMostOthers) return;
+  const std::vector<Vec3> way = way_.empty() ? std::vector{request.position, request.target} : way_;
+  if (other_search_.state() != GridSearch::State::kSearching) {
+    const double enough = request.vehicle.radius + request.margin + kRoom;
+    const auto gate = gate_of(closed_.empty() ? way : last_, enough);
+    if (!gate) {
+      tries_ = kMostTries;
+      return;
+    }
+    closed_.push_back(*gate);
+  }
+  const GridSearch::State state = advance(other_search_, request, closed_);
+  if (state == GridSearch::State::kSearching) return;
+  ++tries_;
+  if (state == GridSearch::State::kFound) {
+    last_ = pulled_tight(other_search_.way(), request, closed_);
+    const bool is_other =
+        !are_alike(last_, way) &&
+        std::none_of(others_.begin(), others_.end(), [&](const auto& other) { return are_alike(last_, other); });
+    if (is_other && is_open(last_, request) && length_of(last_) <= kDetour * length_of(way)) others_.push_back(last_);
+  } else {
+    tries_ = kMostTries;
+  }
+  other_search_ = {};
+}
+
+// A column that fills the narrowest place ahead, which is within `enough` of something: what is waited for is near.
+// None that is so near to the vehicle or the target that it would shut it in.
+std::optional<GridQuery::Column> Guide::gate_of(std::span<const Vec3> way, double enough) const {
+  std::optional<GridQuery::Column> gate;
+  double narrowest = enough;
+  for_each_place(way, kGateAhead, [&](const Vec3& place) {
+    const double room = standing_.distance(place, narrowest);
+    const double apart = room + kGateMore + settings_.guide_cell;
+    const auto is_near = [&](const Vec3& end) { return (place - end).head<2>().norm() < apart; };
+    if (room >= narrowest || is_near(way.front()) || is_near(way.back())) return;
+    narrowest = room;
+    gate = {place, room + kGateMore};
+  });
+  return gate;
+}
+
+// Nothing stands between places that are as far along both: one can be drawn over to the other.
+bool Guide::are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const {
+  const double most = std::max(length_of(a), length_of(b));
+  const int places = 1 + static_cast<int>(most / kSample);
+  for (int n = 1; n < places; ++n) {
+    const double share = static_cast<double>(n) / places;
+    if (!standing_.is_clear(place_along(a, share * length_of(a)), place_along(b, share * length_of(b)), 0.0))
+      return false;
+  }
+  return true;
+}
+
+// From each place to the farthest in sight that is no nearer to anything than the places between them are, past what is
+// closed.
+std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRequest& request,
+                                      std::span<const GridQuery::Column> closed) const {
   const double wanted = request.vehicle.radius + first_clearance(request, settings_);
   std::vector<double> clearance;
   for (const Vec3& place : way) clearance.push_back(standing_.distance(place, wanted));
@@ -179,7 +318,12 @@ std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRe
     int missed = 0;
     for (std::size_t j = i + 2; j < way.size() && missed < kMissed; ++j) {
       kept = std::min(kept, clearance[j]);
-      if (standing_.is_clear(way[i], way[j], kept)) {
+      const bool is_closed = std::any_of(closed.begin(), closed.end(), [&](const GridQuery::Column& column) {
+        Vec3 a = way[i], b = way[j], center = column.center;
+        a.z() = b.z() = center.z() = 0.0;
+        return (nearest_on_line(center, a, b) - center).norm() < column.radius;
+      });
+      if (!is_closed && standing_.is_clear(way[i], way[j], kept)) {
         farthest = j;
         missed = 0;
       } else {
@@ -237,20 +381,14 @@ double Guide::room_at(const Vec3& place, double enough, const base::Box& volume)
   return most;
 }
 
-void Guide::slow_down(PathRequest& request) {
+void Guide::slow_down(std::span<const Vec3> way, PathRequest& request) {
   const double radius = request.vehicle.radius;
   const double enough = radius + request.margin + kRoom;
   double narrowest = enough;
-  double looked = 0.0;
-  for (std::size_t i = 1; i < way_.size() && looked < kSlowDownAhead; ++i) {
-    const double length = (way_[i] - way_[i - 1]).norm();
-    for (double at = 0.0; at <= length && looked + at < kSlowDownAhead; at += kSample) {
-      const Vec3 place = way_[i - 1] + at / std::max(length, kSample) * (way_[i] - way_[i - 1]);
-      if (standing_.distance(place, narrowest) < narrowest)
-        narrowest = std::min(narrowest, room_at(place, enough, request.volume));
-    }
-    looked += length;
-  }
+  for_each_place(way, kSlowDownAhead, [&](const Vec3& place) {
+    if (standing_.distance(place, narrowest) < narrowest)
+      narrowest = std::min(narrowest, room_at(place, enough, request.volume));
+  });
   if (narrowest >= enough) return;
   const double margin =
       std::min(request.margin, std::max(settings_.guide_margin, narrowest - radius - kRoom) + kSigmas * sigma_);
@@ -262,28 +400,28 @@ void Guide::slow_down(PathRequest& request) {
 
 // To the target, where the way goes hardly aside of the straight line; else to the farthest place on it in sight, or
 // nearly. Returns the end of its leg.
-std::size_t Guide::lead_ahead(PathRequest& request) const {
+std::size_t Guide::lead_ahead(std::span<const Vec3> way, PathRequest& request) const {
   const double kept = request.vehicle.radius + request.margin_beside_standing();
   const auto is_aside = [&](std::size_t leg, const Vec3& place, double most) {
-    return std::any_of(way_.begin() + 1, way_.begin() + static_cast<std::ptrdiff_t>(leg), [&](const Vec3& corner) {
+    return std::any_of(way.begin() + 1, way.begin() + static_cast<std::ptrdiff_t>(leg), [&](const Vec3& corner) {
       return (corner - nearest_on_line(corner, request.position, place)).norm() > most;
     });
   };
   const auto is_near = [&](std::size_t leg, const Vec3& place) {
     return !is_aside(leg, place, kCutOff) || standing_.is_clear(request.position, place, kept);
   };
-  std::size_t leg = way_.size() - 1;
-  if (!is_aside(leg, way_[leg], settings_.guide_deviation)) return leg;
-  while (leg > 1 && !is_near(leg, way_[leg])) --leg;
-  if (leg + 1 == way_.size()) return leg;
+  std::size_t leg = way.size() - 1;
+  if (!is_aside(leg, way[leg], settings_.guide_deviation)) return leg;
+  while (leg > 1 && !is_near(leg, way[leg])) --leg;
+  if (leg + 1 == way.size()) return leg;
   // Somewhere on the next leg.
   double near = 0.0;
   double far = 1.0;
   for (int n = 0; n < kHalvings; ++n) {
     const double middle = 0.5 * (near + far);
-    (is_near(leg + 1, way_[leg] + middle * (way_[leg + 1] - way_[leg])) ? near : far) = middle;
+    (is_near(leg + 1, way[leg] + middle * (way[leg + 1] - way[leg])) ? near : far) = middle;
   }
-  request.target = way_[leg] + near * (way_[leg + 1] - way_[leg]);
+  request.target = way[leg] + near * (way[leg + 1] - way[leg]);
   return leg + 1;
 }
 

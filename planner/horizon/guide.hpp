@@ -17,6 +17,9 @@
 
 namespace jink::planner::horizon {
 
+/// What is left of a way from beside a place, and the way to it, m. Precondition: the way is not empty.
+[[nodiscard]] double left_along(std::span<const Vec3> way, const Vec3& place);
+
 /// Leads one flight. Not thread-safe. The same bits for the same calls.
 class Guide {
  public:
@@ -38,7 +41,19 @@ class Guide {
 
   /// The way that is led along, from beside the vehicle to the target; empty: straight on. ENU, m.
   [[nodiscard]] std::span<const Vec3> way() const { return way_; }
-  /// The ids of the last request's tracks that stand, where its `standing_margin` is less than the margin; else none.
+
+  /// Something that moves is in the way, or straight on: the next calls of lead() look for others, which pass what
+  /// stands on other sides and are at most 1.5 times as long, and for as many places of the grid again.
+  void want_others() { wants_others_ = true; }
+  /// Those that were found, from beside the vehicle.
+  [[nodiscard]] std::span<const std::vector<Vec3>> others() const { return others_; }
+  /// As lead() has led, along one of the others; `request` is as it was given to lead().
+  void lead_along(std::size_t other, PathRequest& request);
+  /// From now on that one is the way.
+  void take(std::size_t other);
+
+  /// The ids of the last request's tracks that stand, where that was led with a `standing_margin` less than the margin;
+  /// else none.
   [[nodiscard]] std::span<const std::uint64_t> standing() const {
     return narrow_ ? std::span<const std::uint64_t>(standing_ids_) : std::span<const std::uint64_t>();
   }
@@ -52,13 +67,21 @@ class Guide {
   };
   void notice(const PathRequest& request, double now, const MapPlace& map);
   void watch(const PathRequest& request, double now);
+  [[nodiscard]] GridSearch::State advance(GridSearch& search, const PathRequest& request,
+                                          std::span<const GridQuery::Column> closed) const;
+  void begin_way(std::vector<Vec3> way);
+  void look_for_others(const PathRequest& request);
+  [[nodiscard]] std::optional<GridQuery::Column> gate_of(std::span<const Vec3> way, double enough) const;
+  [[nodiscard]] bool are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const;
   void look_for_way(const PathRequest& request, double now);
-  [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request) const;
+  [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request,
+                                               std::span<const GridQuery::Column> closed) const;
   [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
   bool pass(const Vec3& position);
   [[nodiscard]] double room_at(const Vec3& place, double enough, const base::Box& volume) const;
-  void slow_down(PathRequest& request);
-  std::size_t lead_ahead(PathRequest& request) const;
+  void lead_along(std::span<const Vec3> way, PathRequest& request);
+  void slow_down(std::span<const Vec3> way, PathRequest& request);
+  std::size_t lead_ahead(std::span<const Vec3> way, PathRequest& request) const;
 
   base::HorizonSettings settings_;
   Knowledge knowledge_;
@@ -69,6 +92,13 @@ class Guide {
   double sigma_ = 0.0;  // m, the largest standard deviation of their positions
   GridSearch search_;
   std::vector<Vec3> way_;
+  bool taken_ = false;  // though another was shorter: it is kept even where straight on is free
+  bool wants_others_ = false;
+  GridSearch other_search_;
+  int tries_ = 0;
+  std::vector<GridQuery::Column> closed_;  // on the way and the others
+  std::vector<Vec3> last_;                 // way that was found beside it, one of the others or not
+  std::vector<std::vector<Vec3>> others_;
   Vec3 target_ = Vec3::Zero();  // of the flight
   double search_again_ = 0.0;   // s, when, after one that found none
   Progress progress_;

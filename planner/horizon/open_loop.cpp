@@ -9,7 +9,7 @@
 
 #include "planner/geometry/obstacle_motion.hpp"
 #include "planner/horizon/elastic_band.hpp"
-#include "planner/horizon/guide.hpp"
+#include "planner/horizon/guided_planner.hpp"
 #include "planner/horizon/horizon_planner.hpp"
 #include "planner/horizon/path_check.hpp"
 #include "planner/horizon/reach.hpp"
@@ -85,7 +85,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
   std::vector<geometry::KnownPath> paths(request.path.paths.begin(), request.path.paths.end());
   from.paths = paths;
   base::TimedPath previous;
-  Guide guide(planner.settings(), Guide::Knowledge::kWhole);
+  GuidedPlanner guided(planner, Guide::Knowledge::kWhole);
   double t = 0.0;
   for (std::uint64_t number = 0;; ++number) {
     now.clear();
@@ -102,11 +102,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
       paths[i].until = at_start.until - t;
     }
     PathRequest led = from;
-    guide.lead(led, t, {request.map});
-    set_apart(guide.standing(), now, standing);
-    led.tracks = now;
-    led.standing = standing;
-    verify::Plan part = planner.plan(led, previous, seed, number, budget, pool);
+    verify::Plan part = guided.plan(led, t, {request.map}, previous, seed, number, budget, pool);
     if (part.status == verify::PlanStatus::kInvalid) return part;
     if (number == 0) whole.front = part.front;
     whole.evaluations += part.evaluations;

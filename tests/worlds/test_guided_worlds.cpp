@@ -88,6 +88,21 @@ std::vector<GuidedWorld> guided_worlds() {
   return worlds;
 }
 
+// What swings in the door straight on never rests and never leaves it: the way is through the other one.
+TEST(GuidedWorlds, WhereSomethingThatMovesIsInTheWayAnotherIsTaken) {
+  Obstacles walls{box({10, -6.325, 4}, {0.2, 11.35, 8}), box({10, 3, 4}, {0.2, 4.7, 8}),
+                  box({10, 9.325, 4}, {0.2, 5.35, 8})};
+  GuidedWorld doors = world("two_doors", {});
+  doors.scenario.map = std::move(walls);
+  config::SineMotion swings;
+  swings.center = {10, 0, 1.5};
+  swings.amplitude = {0, 0.3, 0};
+  swings.frequency_hz = {0, 0.15, 0};
+  doors.scenario.obstacles.push_back({config::CylinderShape{0.4, 8.0}, swings});
+  const auto flight = expect_flown_through(doors.scenario);
+  EXPECT_LT(flight.flight.flight_time, 30.0);
+}
+
 class GuidedWorlds : public testing::TestWithParam<GuidedWorld> {};
 
 TEST_P(GuidedWorlds, AreFlownThrough) {

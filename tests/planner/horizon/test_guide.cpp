@@ -199,6 +199,55 @@ TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
   EXPECT_EQ(request.margin_beside_standing(), kKept);
 }
 
+/// A wall across at x, higher than the volume, with two doors of 1.3 m, about y = 0 and y = 6.
+std::vector<base::Track> wall_with_two_doors(double x) {
+  return numbered(
+      {box({x, -10.325, 4}, {0.2, 19.35, 12}), box({x, 3, 4}, {0.2, 4.7, 12}), box({x, 13.325, 4}, {0.2, 13.35, 12})});
+}
+
+// Through the other door: not beside what is in the first one, nor round a block that stands free.
+TEST(Guide, FindsOtherWaysWhenThatIsWanted) {
+  std::vector<base::Track> tracks = wall_with_two_doors(10);
+  for (const double y : {0.0, 0.5}) {
+    SCOPED_TRACE(y);
+    const auto asked = [&] { return guide_request(tracks, {5, y, 2}); };
+    Guide guide({}, Guide::Knowledge::kWhole);
+    PathRequest request = asked();
+    guide.lead(request, 0.0);
+    EXPECT_TRUE(guide.others().empty());
+    guide.want_others();
+    for (int n = 0; n < 8; ++n) {
+      request = asked();
+      guide.lead(request, 0.1 * n);
+      EXPECT_LT(request.target.y(), 1.0) << "until it is taken";
+    }
+    ASSERT_EQ(guide.others().size(), 1U);
+    EXPECT_EQ(guide.others()[0].front(), asked().position);
+    EXPECT_EQ(guide.others()[0].back(), asked().target);
+    PathRequest other = asked();
+    guide.lead_along(0, other);
+    EXPECT_GT(other.target.y(), 4.0);
+    EXPECT_GT(clearance_of(tracks, other.position, other.way.front()), 0.0);
+    guide.take(0);
+    EXPECT_TRUE(guide.others().empty());
+    request = asked();
+    guide.lead(request, 1.0);
+    EXPECT_EQ(request.target, other.target) << "though straight on is nearer";
+    EXPECT_NEAR(left_along(guide.way(), asked().position), 19.3, 1.0);
+  }
+  tracks.pop_back();
+  tracks.push_back(box({10, 13.3, 4}, {0.2, 20.7, 12}));  // the second door is closed
+  PathRequest request = guide_request(tracks, {5, 0.5, 2});
+  Guide guide({}, Guide::Knowledge::kWhole);
+  guide.lead(request, 0.0);
+  guide.want_others();
+  for (int n = 0; n < 8; ++n) {
+    request = guide_request(tracks, {5, 0.5, 2});
+    guide.lead(request, 0.1 * n);
+  }
+  EXPECT_TRUE(guide.others().empty());
+}
+
 TEST(Guide, PassesByTheMapAsByTracks) {
   const geometry::StaticMap map(dead_end());
   PathRequest request = guide_request({});

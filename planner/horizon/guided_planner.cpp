@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planner/horizon/guided_planner.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "planner/geometry/obstacle_motion.hpp"
+
+namespace jink::planner::horizon {
+namespace {
+
+constexpr double kPatience = 2.0;  // s, that may be lost on a way before others are looked at
+constexpr double kHeld = 4.0;      // m, from the vehicle, that its plan leads at most meanwhile
+constexpr double kBeside = 2.0;    // m, from there, that something comes
+constexpr double kMoves = 0.1;     // m, by which that is elsewhere before or after
+constexpr double kLookStep = 0.5;  // s
+constexpr double kBlocked = 0.5;   // s, for which that lasts before
+constexpr double kRegret = 1.0;    // s, by which another arrives earlier to be taken
+
+/// Where it is known to lead to.
+base::TimedPoint known_end(const verify::Plan& plan) {
+  return base::sample(plan.path, std::min(plan.horizon, plan.path.back().t));
+}
+
+/// Whether something that moves comes near a place within so many seconds.
+bool is_crossed(const PathRequest& request, const Vec3& place, double until) {
+  const double near = request.vehicle.radius + request.margin + kBeside;
+  const auto comes = [&](double radius, const auto& position) {
+    bool moves = false, comes_near = false;
+    for (double t = 0.0; t <= until; t += kLookStep) {
+      moves = moves || (position(t) - position(0.0)).norm() > kMoves;
+      comes_near = comes_near || (position(t) - place).norm() - radius < near;
+    }
+    return moves && comes_near;
+  };
+  return std::any_of(request.tracks.begin(), request.tracks.end(),
+                     [&](const base::Track& track) {
+                       return comes(track.radius, [&](double t) {
+                         return geometry::predict_position(track, t, request.acceleration_trust);
+                       });
+                     }) ||
+         std::any_of(request.paths.begin(), request.paths.end(), [&](const geometry::KnownPath& path) {
+           return comes(path.radius, [&](double t) { return path.position(t); });
+         });
+}
+
+/// When a plan along a way gets to the flight's target, s, if it goes on at cruise speed after what is known of it.
+double arrival(const verify::Plan& plan, std::span<const Vec3> way, double cruise) {
+  if (!plan.verification.free()) return base::kInfinity;
+  const base::TimedPoint end = known_end(plan);
+  return end.t + left_along(way, end.position) / cruise;
+}
+
+}  // namespace
+
+GuidedPlanner::Surroundings GuidedPlanner::surround(PathRequest& request) const {
+  Surroundings around{{request.tracks.begin(), request.tracks.end()},
+                      {request.standing.begin(), request.standing.end()},
+                      {guide_.standing().begin(), guide_.standing().end()}};
+  set_apart(around.ids, around.tracks, around.standing);
+  request.tracks = around.tracks;
+  request.standing = around.standing;
+  return around;
+}
+
+verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
+                                 std::uint64_t seed, std::uint64_t number, const base::Budget& budget,
+                                 base::WorkerPool& pool) {
+  const PathRequest given = request;
+  guide_.lead(request, now, map);
+  around_ = surround(request);
+  verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
+  if (best.path.empty()) return best;
+  const std::vector<Vec3> way = guide_.way().empty() ? std::vector{given.position, given.target}
+                                                     : std::vector(guide_.way().begin(), guide_.way().end());
+  const double cruise = given.vehicle.cruise_speed;
+  double earliest = arrival(best, way, cruise);
+  // Farther ahead a narrow place looks closed, until the margin gives way there.
+  const Vec3 held_at = known_end(best).position;
+  const bool is_held = (held_at - given.position).norm() < kHeld && is_crossed(request, held_at, best.horizon);
+  if (!is_held || earliest <= left_along(way, given.position) / cruise + kPatience) {
+    blocked_since_.reset();
+    return best;
+  }
+  if (!blocked_since_) blocked_since_ = now;
+  if (now - *blocked_since_ < kBlocked) return best;
+  guide_.want_others();
+  std::optional<std::size_t> taken;
+  std::int64_t evaluations = best.evaluations;
+  for (std::size_t k = 0; k < guide_.others().size(); ++k) {
+    PathRequest other = given;
+    guide_.lead_along(k, other);
+    Surroundings around = surround(other);
+    verify::Plan plan = planner_.plan(other, {}, seed, number, budget, pool);
+    evaluations += plan.evaluations;
+    const double arrives = arrival(plan, guide_.others()[k], cruise);
+    if (!(arrives + kRegret < earliest)) continue;
+    earliest = arrives;
+    best = std::move(plan);
+    request = std::move(other);
+    around_ = std::move(around);
+    taken = k;
+  }
+  best.evaluations = evaluations;
+  if (taken) {
+    guide_.take(*taken);
+    blocked_since_.reset();
+  }
+  return best;
+}
+
+}  // namespace jink::planner::horizon
