@@ -219,7 +219,6 @@ Endings read_endings(const Value& value) {
 }
 
 CloudPolicy read_cloud(const Value& value) {
-  static constexpr std::array<std::string_view, 2> kUnknown = {"free", "occupied"};
   const Map map(value, {"frame", "mount", "range", "unknown", "timeout_s", "forget_s", "all_round"});
   CloudPolicy cloud;
   if (const auto frame = map.find("frame")) cloud.frame = frame->text();
@@ -231,8 +230,7 @@ CloudPolicy read_cloud(const Value& value) {
     cloud.orientation = keys.vec3_or("orientation", within(10), cloud.orientation);
   }
   cloud.range = map.number_or("range", closed(2, 25), cloud.range);
-  if (const auto unknown = map.find("unknown"); unknown && unknown->choice(kUnknown) != 0)
-    unknown->fail("cannot be flown yet: what was not seen counts as free; expected free");
+  if (const auto unknown = map.find("unknown")) cloud.unknown = static_cast<Unknown>(unknown->choice(kUnknown));
   cloud.timeout_s = map.number_or("timeout_s", above(0, 60), cloud.timeout_s);
   cloud.forget_s = map.number_or("forget_s", closed(1, 3600), cloud.forget_s);
   if (const auto all_round = map.find("all_round")) cloud.all_round = all_round->boolean();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/sensed_from.hpp"
+#include "config/unknown.hpp"
 #include "planner/base/types.hpp"
 #include "planner/geometry/static_map.hpp"
 
@@ -98,6 +99,7 @@ struct CloudPolicy {
   double range = 8.0;      ///< m, farther points say only that the way to there is free
   double timeout_s = 1.0;  ///< silence after which the clouds are stale
   double forget_s = 60.0;  ///< after which what was seen well, and is seen no more, is not known any more
+  Unknown unknown = Unknown::kFree;
   /// It sees all round. Else the vehicle looks where it flies, and is slow where it cannot yet.
   bool all_round = false;
   bool operator==(const CloudPolicy&) const = default;

@@ -20,7 +20,8 @@ constexpr std::size_t kMostFurtherVehicles = 9;  // PX4's instances are 0 to 9
 Scan read_scan(const Value& value) {
   static constexpr std::array<std::string_view, 2> kScanners = {"camera", "lidar"};
   if (!value.is_map()) return value.choice(kScanners) == 0 ? depth_camera() : lidar();
-  const Map map(value, {"kind", "horizontal_deg", "vertical_deg", "columns", "rows", "range", "rate", "noise"});
+  const Map map(value,
+                {"kind", "horizontal_deg", "vertical_deg", "columns", "rows", "range", "rate", "noise", "unknown"});
   Scan scan = map.at("kind", "camera or lidar").choice(kScanners) == 0 ? depth_camera() : lidar();
   scan.horizontal_deg = map.number_or("horizontal_deg", above(0, 360), scan.horizontal_deg);
   scan.vertical_deg = map.number_or("vertical_deg", above(0, 180), scan.vertical_deg);
@@ -29,6 +30,7 @@ Scan read_scan(const Value& value) {
   scan.range = map.number_or("range", above(0, 25), scan.range);
   scan.rate = map.number_or("rate", above(0, 100), scan.rate);
   scan.noise = map.number_or("noise", closed(0, 10), scan.noise);
+  if (const auto unknown = map.find("unknown")) scan.unknown = static_cast<Unknown>(unknown->choice(kUnknown));
   return scan;
 }
 
@@ -123,11 +125,11 @@ double default_time_limit(const Scenario& scenario) {
 }  // namespace
 
 Scan depth_camera() {
-  return {70.0, 50.0, 70, 50, 8.0, 15.0, 0.0};
+  return {70.0, 50.0, 70, 50, 8.0, 15.0};
 }
 
 Scan lidar() {
-  return {360.0, 60.0, 360, 40, 12.0, 10.0, 0.0};
+  return {360.0, 60.0, 360, 40, 12.0, 10.0};
 }
 
 std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {

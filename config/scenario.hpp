@@ -10,6 +10,7 @@
 
 #include "config/faults.hpp"
 #include "config/sensed_from.hpp"
+#include "config/unknown.hpp"
 #include "planner/base/types.hpp"
 
 namespace jink::config {
@@ -96,9 +97,10 @@ struct Scan {
   double vertical_deg = 0.0;    ///< likewise
   int columns = 0;
   int rows = 0;
-  double range = 0.0;  ///< m
-  double rate = 0.0;   ///< Hz
-  double noise = 0.0;  ///< m, standard deviation along a ray
+  double range = 0.0;                ///< m
+  double rate = 0.0;                 ///< Hz
+  double noise = 0.0;                ///< m, standard deviation along a ray
+  Unknown unknown = Unknown::kFree;  ///< where none of the rays came, to the companion
   bool operator==(const Scan&) const = default;
 };
 /// 70 by 50 degrees, 8 m, 15 Hz.

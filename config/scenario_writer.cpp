@@ -123,7 +123,10 @@ std::string scan_text(const Scan& scan) {
   map.add_unless(defaults.vertical_deg, "vertical_deg", scan.vertical_deg);
   map.add_unless(defaults.columns, "columns", scan.columns).add_unless(defaults.rows, "rows", scan.rows);
   map.add_unless(defaults.range, "range", scan.range).add_unless(defaults.rate, "rate", scan.rate);
-  return map.add_unless(defaults.noise, "noise", scan.noise).text();
+  map.add_unless(defaults.noise, "noise", scan.noise);
+  if (scan.unknown != defaults.unknown)
+    map.add("unknown", std::string(kUnknown[static_cast<std::size_t>(scan.unknown)]));
+  return map.text();
 }
 
 std::string sensing_text(const Sensing& sensing) {

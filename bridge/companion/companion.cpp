@@ -51,7 +51,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       intake_(mission_, settings_, parts.link, parts.tracks, parts.intents),
       sight_(mission_, settings_, parts.clouds, parts.clock),
       motion_(mission_, settings_, parts.link, parts.clock, reporter_),
-      planning_(mission_, settings_, parts.planner, reporter_),
+      planning_(mission_, settings_, parts.planner, sight_, reporter_),
       route_(mission_.waypoints) {}
 
 bool Companion::step(double now) {
@@ -150,13 +150,12 @@ void Companion::take_tracks(double now) {
 
 void Companion::take_clouds(double now) {
   sight_.take(now, intake_, frame_change_);
-  planning_.see(sight_.seen(), sight_.column());
   if (mission_.cloud) reporter_.clouds(now, sight_.source_status(), sight_.unplaced(), sight_.counts());
 }
 
 // A plan for something else than what is flown now was begun before that changed.
 void Companion::take_plan(double now) {
-  std::optional<PlanResult> result = planning_.take(now, end());
+  std::optional<PlanResult> result = planning_.take(now, motion_, end());
   stop_without_planner(now);
   if (result && !result->plan.path.empty() && result->job.goal == goal_)
     motion_.follow(std::move(*result), intake_.estimate_shift());
@@ -240,7 +239,7 @@ void Companion::move(double now, double dt, const supervisor::Decision& decision
   motion_.send(now, dt, state, turns ? std::optional(place_to_look_at(now)) : std::nullopt);
 }
 
-// Who sees ahead alone looks where he flies; where he stays, to the target at first, and then all round.
+// Who sees ahead alone looks where he flies; where he stays, where he would go on at first, and then all round.
 Vec3 Companion::place_to_look_at(double now) {
   const vehicle::VehicleState& state = intake_.state();
   if (!mission_.cloud || mission_.cloud->all_round) return route_.target();
@@ -250,7 +249,7 @@ Vec3 Companion::place_to_look_at(double now) {
     return *place;
   }
   const double stays = now - goes_on_;
-  if (stays < kStays || stays > kStays + kRoundAbout) return route_.target();
+  if (stays < kStays || stays > kStays + kRoundAbout) return planning_.unseen().value_or(route_.target());
   return position + kAside * Vec3(std::cos(state.yaw + kAsideAngle), std::sin(state.yaw + kAsideAngle), 0.0);
 }
 

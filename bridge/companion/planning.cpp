@@ -31,6 +31,9 @@ constexpr double kCautious = 0.3;            // of the cruise speed, while what 
 constexpr double kSeeing = 0.2;              // s, from what a sensor sees to a map of it
 constexpr double kInView = 0.82;             // cosine of the angle from where the vehicle looks, 35 degrees
 constexpr double kBeside = 0.5;              // m, no farther off no direction tells where to look
+constexpr double kFarther = 1.0;             // s, along a plan from where it was not seen, to look there
+constexpr double kLeavingStep = 0.1;         // s, between the times at which such a plan might be left for a stop
+constexpr double kWaits = 0.5;               // m, that such a stop is from where the vehicle is, so that it waits
 constexpr double kSlowest = 0.3;             // m/s, at which a vehicle flies that does not see where to
 
 // The path as it will be flown from where the vehicle is beside it, at another velocity: back to it smoothly.
@@ -47,6 +50,17 @@ planner::base::TimedPath rejoined(planner::base::TimedPath path, const Vec3& pos
     path.push_back(last);
   }
   return beside.added_to(std::move(path));
+}
+
+// Along a path up to a time, and to a stop straight on.
+planner::base::TimedPath left_at(const planner::base::TimedPath& path, double t,
+                                 const setpoints::SetpointStream& stream) {
+  planner::base::TimedPath left;
+  std::copy_if(path.begin(), path.end(), std::back_inserter(left),
+               [t](const planner::base::TimedPoint& point) { return point.t < t; });
+  const planner::base::TimedPath stop = stream.straight_stop(planner::base::sample(path, t));
+  left.insert(left.end(), stop.begin(), stop.end());
+  return left;
 }
 
 // Free, verified, and never farther away than where it begins, which is there or nearly.
@@ -67,7 +81,7 @@ void blur(All& all, double sigma) {
 
 }  // namespace
 
-std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
+std::optional<PlanResult> Planning::take(double now, const MotionControl& motion, const Vec3& end) {
   std::optional<PlanResult> result;
   try {
     if (!failed_) result = planner_.poll(now);
@@ -76,6 +90,7 @@ std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
   }
   if (!result) return result;
   ++plans_;
+  stay_in_seen(now, motion, *result);
   stays_at_end_ = stays_at(end, result->plan) && (mission_.arrival == config::Arrival::kHold || lands_free(*result));
   reporter_.plan(now, *result);
   if (result->plan.path.empty()) return result;
@@ -83,6 +98,41 @@ std::optional<PlanResult> Planning::take(double now, const Vec3& end) {
   planned_for_ = result->job.target;
   planned_to_ = result->plan.path.back().position;
   return result;
+}
+
+void Planning::stay_in_seen(double now, const MotionControl& motion, PlanResult& result) {
+  planner::base::TimedPath& path = result.plan.path;
+  const bool visits = result.job.goal == Goal::Kind::kWaypoint && result.job.visit && !path.empty();
+  const double leaves = visits ? sight_.leaves_seen(path) : planner::base::kInfinity;
+  if (leaves < planner::base::kInfinity) {
+    unseen_ = planner::base::sample(path, leaves + kFarther).position;
+    std::vector<planner::base::TimedPath> stops;
+    for (double at = leaves; at > 0.0; at -= kLeavingStep) {
+      planner::base::TimedPath stop = left_at(path, at, motion.stream());
+      if (is_seen(stop)) stops.push_back(std::move(stop));
+    }
+    stops.push_back(motion.stream().straight_stop(path.front()));
+    const prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
+    set_obstacles(result.job, obstacles);
+    planner::horizon::Stop stop = contingency_.choose(result.job.request, stops, seen_alone());
+    forget_obstacles(result.job);
+    path = std::move(stop.path);
+    result.plan.verification = stop.verification;
+    result.plan.status =
+        stop.verification.free() ? planner::verify::PlanStatus::kProgresses : planner::verify::PlanStatus::kBlocked;
+  }
+  // A stop that was flown before may be kept.
+  const bool stays = visits && (path.back().position - path.front().position).norm() < kWaits;
+  if (leaves == planner::base::kInfinity && !stays) unseen_.reset();
+  reporter_.unseen(now, unseen_ && stays);
+}
+
+bool Planning::is_seen(const planner::base::TimedPath& path) const {
+  return sight_.leaves_seen(path) == planner::base::kInfinity;
+}
+
+std::function<bool(const planner::base::TimedPath&)> Planning::seen_alone() const {
+  return [this](const planner::base::TimedPath& path) { return is_seen(path); };
 }
 
 // From where the path ends straight down to the ground, as far ahead as plans look.
@@ -151,10 +201,11 @@ void Planning::look_at_map(const vehicle::VehicleState& state, PlanJob& job) con
   job.map.up = mission_.map_up;
   job.map.floor = std::min(mission_.ground, mission_.min_height) + config::kRelief;
   job.map.sigma = state.position_sigma;
-  if (seen_ == nullptr) return;
-  job.map.map = seen_->map;
-  job.map.seen = seen_;
-  job.map.up = seen_->up;
+  const std::shared_ptr<const map::Seen> seen = sight_.seen();
+  if (seen == nullptr) return;
+  job.map.map = seen->map;
+  job.map.seen = seen;
+  job.map.up = seen->up;
   // What was seen from the vehicle is off by what the vehicle's own place is.
   if (mission_.map->tracks().empty()) job.map.sigma = 0.0;
 }
@@ -174,13 +225,14 @@ void Planning::keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahe
 }
 
 void Planning::keep_in_column(planner::horizon::PathRequest& request) const {
-  if (!column_) return;
+  const std::optional<map::Occupancy::Column> column = sight_.column();
+  if (!column) return;
   const double radius = request.vehicle.radius;
   const double rate = request.velocity.z();
   const double stop = request.position.z() + rate * std::abs(rate) / (2.0 * settings_.horizon.braking);
   const auto [low, high] = std::minmax({request.position.z(), stop, request.target.z()});
-  request.volume.min.z() = std::max(request.volume.min.z(), std::min(column_->low + radius, low));
-  request.volume.max.z() = std::min(request.volume.max.z(), std::max(column_->high - radius, high));
+  request.volume.min.z() = std::max(request.volume.min.z(), std::min(column->low + radius, low));
+  request.volume.max.z() = std::min(request.volume.max.z(), std::max(column->high - radius, high));
 }
 
 // What is asked of any path of the vehicle; the request says where it begins and leads to.
@@ -206,6 +258,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   const setpoints::SetpointStream& stream = motion.stream();
   PlanJob job;
   job.goal = goal.kind;
+  job.visit = goal.visit;
   job.target = goal.target;
   job.number = plans_;
   job.begun = now;
@@ -265,13 +318,8 @@ std::vector<planner::base::TimedPath> Planning::stops(double now, const MotionCo
   stops.push_back(stream.straight_stop(start.from));
   if (!start.on_reference || stream.plan(now).empty()) return stops;
   const planner::base::TimedPath ahead = stream.ahead(now);
-  for (double later = kStopPeriod; later <= kLatestStop && now + later < ahead.back().t; later += kStopPeriod) {
-    planner::base::TimedPath& stop = stops.emplace_back();
-    std::copy_if(ahead.begin(), ahead.end(), std::back_inserter(stop),
-                 [&](const planner::base::TimedPoint& point) { return point.t < now + later; });
-    const planner::base::TimedPath rest = stream.straight_stop(planner::base::sample(ahead, now + later));
-    stop.insert(stop.end(), rest.begin(), rest.end());
-  }
+  for (double later = kStopPeriod; later <= kLatestStop && now + later < ahead.back().t; later += kStopPeriod)
+    stops.push_back(left_at(ahead, now + later, stream));
   return stops;
 }
 
@@ -294,7 +342,7 @@ planner::base::TimedPath Planning::stop(double now, Intake& intake, const Motion
   look_at_map(intake.state(), job);
   const prediction::Obstacles obstacles = obstacles_of(job, settings_.horizon);
   set_obstacles(job, obstacles);
-  planner::horizon::Stop chosen = contingency_.choose(job.request, flown);
+  planner::horizon::Stop chosen = contingency_.choose(job.request, flown, seen_alone());
   reporter_.stops(now, chosen);
   for (planner::base::TimedPoint& point : chosen.path) point.t += now;
   return offset.taken_off(std::move(chosen.path));

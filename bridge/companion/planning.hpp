@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "bridge/companion/motion.hpp"
 #include "bridge/companion/planner_task.hpp"
 #include "bridge/companion/report.hpp"
+#include "bridge/companion/sight.hpp"
 #include "config/mission.hpp"
 #include "config/settings.hpp"
 #include "planner/horizon/contingency.hpp"
@@ -23,27 +25,24 @@ namespace jink::bridge::companion {
 /// Keeps the planner busy. After what it throws it is left alone. What this refers to outlives it. Not thread-safe.
 class Planning {
  public:
-  Planning(const config::Mission& mission, const config::Settings& settings, PlannerTask& planner,
+  Planning(const config::Mission& mission, const config::Settings& settings, PlannerTask& planner, const Sight& sight,
            FlightReporter& reporter)
       : mission_(mission),
         settings_(settings),
         planner_(planner),
+        sight_(sight),
         reporter_(reporter),
         contingency_(settings.horizon) {}
 
-  /// The plan that has been finished, if any. `end`: where the flight is to end.
-  std::optional<PlanResult> take(double now, const Vec3& end);
+  /// The plan that has been finished, if any, as far as it is to be flown. `end`: where the flight is to end.
+  std::optional<PlanResult> take(double now, const MotionControl& motion, const Vec3& end);
+  /// Where the newest plan would have gone on into what was not seen; none: it goes nowhere where it may not.
+  [[nodiscard]] const std::optional<Vec3>& unseen() const { return unseen_; }
   /// The planner is free and a plan is due: at once where a track message came or the goal is another, else at a rate.
   [[nodiscard]] bool due(double now, Goal::Kind goal) const;
   /// Starts a plan. Precondition: due().
   void start(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
   void tracks_came() { new_tracks_ = true; }
-  /// What has been seen to stand, from now on (null: nothing is known but the mission's map), and how far up and down
-  /// the vehicle's column is free (none: that does not matter).
-  void see(std::shared_ptr<const map::Seen> seen, const std::optional<map::Occupancy::Column>& column) {
-    seen_ = std::move(seen);
-    column_ = column;
-  }
   /// The reference to stop along, by what is known now, without the planner.
   [[nodiscard]] planner::base::TimedPath stop(double now, Intake& intake, const MotionControl& motion,
                                               const MotionControl::StopStart& start);
@@ -78,20 +77,24 @@ class Planning {
   /// Not up and down into what was not seen: no higher and no lower than the vehicle's column is free, than it is and
   /// can stop, and than the target.
   void keep_in_column(planner::horizon::PathRequest& request) const;
+  /// A plan to a waypoint that leads to where the mission may not fly, as that was not seen, is left before for a stop.
+  void stay_in_seen(double now, const MotionControl& motion, PlanResult& result);
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
+  [[nodiscard]] bool is_seen(const planner::base::TimedPath& path) const;
+  [[nodiscard]] std::function<bool(const planner::base::TimedPath&)> seen_alone() const;
   [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);
 
   const config::Mission& mission_;
   const config::Settings& settings_;
   PlannerTask& planner_;
+  const Sight& sight_;
   FlightReporter& reporter_;
   planner::horizon::Contingency contingency_;
   std::optional<double> last_begun_;
   Goal::Kind last_goal_ = Goal::Kind::kWaypoint;
   bool new_tracks_ = false;  // since then
-  std::optional<map::Occupancy::Column> column_;
-  std::shared_ptr<const map::Seen> seen_;
+  std::optional<Vec3> unseen_;
   double rate_kept_ = 0.0;  // from when on another plan would be no more than the largest rate
   std::optional<double> newest_plan_;
   Vec3 planned_for_ = Vec3::Zero();  // by the newest plan: the goal's target,

@@ -123,6 +123,11 @@ void FlightReporter::stuck(double now, bool stuck) {
     event(now, "stuck", stuck ? "no nearer to the target for 4 s: looking for a way round" : "over");
 }
 
+void FlightReporter::unseen(double now, bool stays) {
+  if (changed(said_.unseen, stays))
+    event(now, "unseen", stays ? "the way on was not seen: it waits and looks" : "over");
+}
+
 void FlightReporter::aircraft(double now, const std::optional<Intake::Approach>& approach) {
   if (!approach) said_.aircraft.clear();
   if (!approach || !said_.aircraft.insert(approach->icao_address).second) return;

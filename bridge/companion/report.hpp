@@ -96,6 +96,7 @@ class FlightReporter {
   void reference_lost(double now, bool lost, double error, double share);
   void cautious(double now, bool cautious);
   void stuck(double now, bool stuck);
+  void unseen(double now, bool stays);
   void sending(double now, bool works);
   void aircraft(double now, const std::optional<Intake::Approach>& approach);
   /// What became of clouds of points: those refused, or of a time at which it is not known where the vehicle was.
@@ -114,8 +115,8 @@ class FlightReporter {
     supervisor::Phase phase = supervisor::Phase::kDone;
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
-    bool evades = false, reference_lost = false, cautious = false, stuck = false, arrived = false, sending = true,
-         margin = false;
+    bool evades = false, reference_lost = false, cautious = false, stuck = false, unseen = false, arrived = false,
+         sending = true, margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     map::CloudSourceStatus clouds;

@@ -9,6 +9,8 @@
 namespace jink::bridge::companion {
 namespace {
 
+constexpr double kSample = 0.04;  // s, of a path: a cell at 5 m/s
+
 // The last of those at or before t; the first where all are later.
 template <typename History>
 auto before(const History& history, double t) {
@@ -113,6 +115,17 @@ void Sight::place(double now, map::Cloud cloud, Intake& intake) {
   job.up = mission_.map_up;
   job.anew = std::exchange(anew_, false);
   mapper_->put(std::move(job));
+}
+
+double Sight::leaves_seen(const planner::base::TimedPath& path) const {
+  if (!mapper_ || mission_.cloud->unknown == config::Unknown::kFree) return planner::base::kInfinity;
+  std::vector<Vec3> places;
+  const double begin = path.front().t;
+  const auto time_of = [&](std::size_t place) { return begin + kSample * static_cast<double>(place); };
+  while (time_of(places.size()) < path.back().t + kSample)
+    places.push_back(planner::base::sample(path, time_of(places.size())).position);
+  const std::size_t unseen = mapper_->first_unseen(places);
+  return unseen < places.size() ? time_of(unseen) : planner::base::kInfinity;
 }
 
 bool Sight::is_stale(double now) const {

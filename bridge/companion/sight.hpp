@@ -13,6 +13,7 @@
 #include "bridge/map/mapper.hpp"
 #include "config/mission.hpp"
 #include "config/settings.hpp"
+#include "planner/base/trajectory.hpp"
 
 namespace jink::bridge::companion {
 
@@ -60,6 +61,9 @@ class Sight {
   [[nodiscard]] std::optional<map::Occupancy::Column> column() const {
     return mapper_ ? mapper_->column() : std::nullopt;
   }
+  /// When a path of the vehicle, local ENU, first leads to where it was not seen to be free, s of the path's time;
+  /// infinity: nowhere, or the mission takes for free what was not seen.
+  [[nodiscard]] double leaves_seen(const planner::base::TimedPath& path) const;
   /// The mission wants to see, and nothing came for too long.
   [[nodiscard]] bool is_stale(double now) const;
   [[nodiscard]] map::CloudSourceStatus source_status() const;

@@ -11,6 +11,7 @@ namespace jink::bridge::map {
 namespace {
 
 constexpr double kGrown = Occupancy::kCell;  // m, by which what is tracked counts as larger: no trail is left of it
+constexpr double kUnseen = 0.1;              // m, beside the vehicle, that are to be seen, too
 constexpr double kSigmas = 2.0;              // of its position, likewise
 
 /// Something tracked, where it was.
@@ -88,6 +89,15 @@ std::optional<Occupancy::Column> Mapper::column() const {
   return column_;
 }
 
+std::size_t Mapper::first_unseen(std::span<const Vec3> places) const {
+  const std::scoped_lock lock(grid_mutex_);
+  const double radius = own_radius_ + kUnseen;
+  const auto unseen = std::find_if(places.begin(), places.end(), [&](const Vec3& place) {
+    return !grid_.is_known(place - shift_, radius, places.front() - shift_);
+  });
+  return static_cast<std::size_t>(unseen - places.begin());
+}
+
 MapperCounts Mapper::counts() const {
   const std::scoped_lock lock(mutex_);
   return counts_;
@@ -114,7 +124,6 @@ void Mapper::work(const std::stop_token& stop) {
 // The cells lie still where the local frame jumps.
 void Mapper::take(const CloudJob& job) {
   const double begun = clock_ != nullptr ? clock_->now() : 0.0;
-  if (job.anew) grid_.forget();
   const std::vector<Tracked> tracked = tracked_near(job);
   CloudView cloud;
   cloud.time = job.time;
@@ -129,6 +138,9 @@ void Mapper::take(const CloudJob& job) {
       return std::any_of(tracked.begin(), tracked.end(), [&](const Tracked& t) { return t.holds(p + job.shift); });
     };
   }
+  std::unique_lock grid_lock(grid_mutex_);
+  shift_ = job.shift;
+  if (job.anew) grid_.forget();
   const CloudCounts counts = grid_.insert(cloud);
   if (seen() == nullptr || job.anew) grid_.free_around(cloud.vehicle, kRoomAtStart);
   Occupancy::Column column = grid_.free_column(cloud.vehicle, own_radius_);
@@ -136,6 +148,7 @@ void Mapper::take(const CloudJob& job) {
   column.high += job.shift.z();
   Seen now;
   now.boxes = grid_.boxes();
+  grid_lock.unlock();
   now.origin = job.shift - Vec3(0.0, 0.0, job.up);
   now.up = job.up;
   std::shared_ptr<const Seen> before = seen();

@@ -75,6 +75,9 @@ class Mapper {
   [[nodiscard]] std::shared_ptr<const Seen> seen() const;
   /// How far up and down the vehicle's column was free at the newest cloud, local ENU; none before the first.
   [[nodiscard]] std::optional<Occupancy::Column> column() const;
+  /// Of these places of the vehicle, local ENU, on its way from the first one, the first at which it is nearer than
+  /// there to what is unknown, and within 0.1 m of it; their number: none. Waits while a cloud is taken in.
+  [[nodiscard]] std::size_t first_unseen(std::span<const Vec3> places) const;
   [[nodiscard]] MapperCounts counts() const;
 
  private:
@@ -84,8 +87,10 @@ class Mapper {
   const double own_radius_;
   const std::shared_ptr<const planner::geometry::StaticMap> known_;
   const base::Clock* const clock_;
-  Occupancy grid_;            // whoever takes in uses it
-  mutable std::mutex mutex_;  // guards all below but the thread
+  mutable std::mutex grid_mutex_;  // guards the two below
+  Occupancy grid_;
+  Vec3 shift_ = Vec3::Zero();  // of the newest cloud
+  mutable std::mutex mutex_;   // guards all below but the thread
   std::condition_variable_any wake_;
   std::optional<CloudJob> job_;
   std::shared_ptr<const Seen> seen_;

@@ -35,6 +35,16 @@ Cell cell_of(const Vec3& in_cells) {
   return in_cells.array().floor().matrix().cast<int>();
 }
 
+/// Those whose middle is within `radius`, m, of a place.
+template <typename Visit>
+void for_each_cell_within(const Vec3& place, double radius, const Visit& visit) {
+  const Vec3 middle = place / Occupancy::kCell;
+  const double most = radius / Occupancy::kCell;
+  for_each_cell({cell_of(middle.array() - most), cell_of(middle.array() + most) + Cell::Ones()}, [&](const Cell& cell) {
+    if (((cell.cast<double>().array() + 0.5).matrix() - middle).norm() <= most) visit(cell);
+  });
+}
+
 }  // namespace
 
 static_assert(Occupancy::kSize[0] == 1 << kShift[1] && Occupancy::kSize[1] == 1 << (kShift[2] - kShift[1]));
@@ -213,11 +223,19 @@ void Occupancy::take_point(const CloudView& cloud, const Vec3& sensor, const Vec
   rays_.push_back({end, hit});
 }
 
+bool Occupancy::is_known(const Vec3& place, double radius, const Vec3& from) const {
+  bool known = true;
+  for_each_cell_within(place, radius, [&](const Cell& cell) {
+    if (is_inside(cell) && values_[place_of(cell)].level != kUnknown) return;
+    const Vec3 middle = kCell * (cell.cast<double>().array() + 0.5).matrix();
+    known = known && (middle - place).squaredNorm() >= (middle - from).squaredNorm();
+  });
+  return known;
+}
+
 void Occupancy::free_around(const Vec3& place, double radius) {
-  const Vec3 middle = place / kCell;
-  const double most = radius / kCell;
-  for_each_cell({cell_of(middle.array() - most), cell_of(middle.array() + most) + Cell::Ones()}, [&](const Cell& cell) {
-    if (!is_inside(cell) || ((cell.cast<double>().array() + 0.5).matrix() - middle).norm() > most) return;
+  for_each_cell_within(place, radius, [&](const Cell& cell) {
+    if (!is_inside(cell)) return;
     std::int8_t& level = values_[place_of(cell)].level;
     if (level == kUnknown) level = kLeast;
   });

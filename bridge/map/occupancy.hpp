@@ -84,6 +84,8 @@ class Occupancy {
     double low = 0.0, high = 0.0;
   };
   [[nodiscard]] Column free_column(const Vec3& place, double radius) const;
+  /// Whether no cell is unknown whose middle is within `radius`, m, of a place and nearer to it than to `from`.
+  [[nodiscard]] bool is_known(const Vec3& place, double radius, const Vec3& from) const;
   /// What is unknown within `radius`, m, of a place in the window is free.
   void free_around(const Vec3& place, double radius);
   /// All is unknown.

@@ -29,7 +29,8 @@ std::vector<Vec3> directions() {
 
 }  // namespace
 
-Stop Contingency::choose(const PathRequest& request, std::span<const base::TimedPath> stops) {
+Stop Contingency::choose(const PathRequest& request, std::span<const base::TimedPath> stops,
+                         const std::function<bool(const base::TimedPath&)>& allowed) {
   assert(!stops.empty());
   PathRequest evasion = request;
   evasion.target = stops.front().back().position;
@@ -56,7 +57,9 @@ Stop Contingency::choose(const PathRequest& request, std::span<const base::Timed
     for (const Vec3& direction : directions()) {
       evasion.target = stops.front().back().position + away * direction;
       problem_.prepare(evasion);
-      if (consider(problem_.motion(unobstructed))) return best;
+      base::TimedPath path = problem_.motion(unobstructed);
+      if (allowed && !allowed(path)) continue;
+      if (consider(std::move(path))) return best;
     }
   }
   return best;

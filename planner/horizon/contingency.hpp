@@ -2,6 +2,7 @@
 // How a vehicle comes to rest that is not to fly on: verified, without a search.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "planner/base/settings.hpp"
@@ -29,7 +30,9 @@ class Contingency {
   /// Where none keeps the margin: the one that does the least harm. The request's target is not looked at. For a
   /// request that is_valid() in path_check.hpp refuses: the first, not valid. Precondition: `stops` holds a path, none
   /// of them is empty. O(stops · (points + tracks)), allocates.
-  Stop choose(const PathRequest& request, std::span<const base::TimedPath> stops);
+  /// Of its own stops, those above, beside and below, it leaves out what is not `allowed`, where that is asked.
+  Stop choose(const PathRequest& request, std::span<const base::TimedPath> stops,
+              const std::function<bool(const base::TimedPath&)>& allowed = {});
 
  private:
   PathProblem problem_;

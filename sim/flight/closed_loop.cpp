@@ -37,6 +37,7 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
   if (const auto& scan = scenario.sensing.scan) {  // the map is there to be seen
     mission.cloud.emplace();
     mission.cloud->range = scan->range;
+    mission.cloud->unknown = scan->unknown;
     mission.cloud->all_round = scan->horizontal_deg > kAllRound_deg;
   } else {
     mission.map = config::make_map(scenario.map);

@@ -292,7 +292,6 @@ TEST(LoadMission, RefusesBadValues) {
       {"time_limit: 120", "cloud: {range: 1}", 12, "cloud.range", "1", "is not in [2, 25]"},
       {"time_limit: 120", "cloud: {ranges: 8}", 12, "cloud.ranges", "", "did you mean 'range'?"},
       {"time_limit: 120", "cloud: {frame: map}", 12, "cloud.frame", "map", "is known without"},
-      {"time_limit: 120", "cloud: {unknown: occupied}", 12, "cloud.unknown", "occupied", "expected free"},
       {"time_limit: 120", "cloud: {unknown: solid}", 12, "cloud.unknown", "solid", "is not one of free, occupied"},
       {"time_limit: 120", "cloud: {mount: {position: [0, 0]}}", 12, "cloud.mount.position", "", ""},
       {"time_limit: 120", "cloud: {mount: {place: [0, 0, 0]}}", 12, "cloud.mount.place", "", "position"},

@@ -470,10 +470,11 @@ TEST(LoadScenario, AScanIsACameraOrALidarOrGivenInFull) {
   EXPECT_EQ(scan("camera"), depth_camera());
   EXPECT_EQ(scan("lidar"), lidar());
   EXPECT_EQ(scan("{kind: lidar, horizontal_deg: 180, vertical_deg: 40, columns: 90, rows: 16, range: 20, rate: 5, "
-                 "noise: 0.02}"),
-            (Scan{180, 40, 90, 16, 20, 5, 0.02}));
-  for (const char* bad : {"sonar", "{rate: 5}", "{kind: camera, range: 26}", "{kind: camera, columns: 0}",
-                          "{kind: camera, fov: 3}", "{kind: camera, rate: 0}", "{kind: camera, noise: -1}"})
+                 "noise: 0.02, unknown: occupied}"),
+            (Scan{180, 40, 90, 16, 20, 5, 0.02, Unknown::kOccupied}));
+  for (const char* bad :
+       {"sonar", "{rate: 5}", "{kind: camera, range: 26}", "{kind: camera, columns: 0}", "{kind: camera, fov: 3}",
+        "{kind: camera, rate: 0}", "{kind: camera, noise: -1}", "{kind: camera, unknown: solid}"})
     expect_contains(error_of([&] { static_cast<void>(scan(bad)); }), "sensing.scan");
 }
 

@@ -65,7 +65,7 @@ TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
                         {SphereShape{12345678.0 / 1e5}, bounce},
                         {SphereShape{1}, WaypointsMotion{{0, awkward(3)}, {awkward_vector(8), awkward_vector(9)}}},
                         {SphereShape{1}, LinearMotion{{1, 2, -0.0}, {-0.0, 0, 0}}}};
-  scenario.sensing.scan = Scan{awkward(9), awkward(9), 3, 4, awkward(9), awkward(9), 0.02};
+  scenario.sensing.scan = Scan{awkward(9), awkward(9), 3, 4, awkward(9), awkward(9), 0.02, Unknown::kOccupied};
   const Scenario again = read_back(scenario);
   expect_same(scenario, again);
   const auto& last = std::get<LinearMotion>(again.obstacles.back().motion);

@@ -89,5 +89,30 @@ TEST(SeenWorlds, NothingIsFlownIntoThatIsOutOfView) {
   }
 }
 
+// A hall whose walls and ceiling are in range: what is behind the door is seen from the door.
+TEST(SeenWorlds, WhoFliesOnlyWhereItWasSeenFindsTheDoorOfAHall) {
+  const std::string hall = kWallWithADoor +
+                           "- {box: [26, 24, 0.2], position: [11, 0, 4.2]}\n"
+                           "- {box: [26, 0.2, 6], position: [11, 12.1, 3]}\n"
+                           "- {box: [26, 0.2, 6], position: [11, -12.1, 3]}\n"
+                           "- {box: [0.2, 24, 6], position: [-2.1, 0, 3]}\n"
+                           "- {box: [0.2, 24, 6], position: [24.1, 0, 3]}\n";
+  expect_flown_through(unseen("scan: {kind: camera, range: 25, unknown: occupied}", hall));
+}
+
+// Rays that meet nothing tell nothing: who flies only where it was seen stays in the room at the start.
+TEST(SeenWorlds, WhoFliesOnlyWhereItWasSeenStaysWhereNothingIsSeen) {
+  for (const char* unknown : {"free", "occupied"}) {
+    config::Scenario scenario =
+        unseen("scan: {kind: camera, unknown: " + std::string(unknown) + "}", "obstacles: []\n");
+    scenario.time_limit = 20.0;
+    const auto result = flown(scenario);
+    const bool free = scenario.sensing.scan->unknown == config::Unknown::kFree;
+    using bridge::supervisor::Outcome;
+    EXPECT_EQ(result.flight.outcome, free ? Outcome::kReached : Outcome::kTimeout) << result.flight.reason;
+    EXPECT_TRUE(free || result.flight.path_length < 3.0) << result.flight.path_length;
+  }
+}
+
 }  // namespace
 }  // namespace jink::worlds

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <memory>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -70,6 +71,24 @@ TEST(Mapper, TellsHowFarUpAndDownIsFree) {
   job.vehicle.y() = job.sensor.y() += 5.0;
   mapper.put(job);
   EXPECT_EQ(mapper.column()->high, job.vehicle.z()) << "where nothing is known";
+}
+
+// In the local frame, wherever that has jumped to.
+TEST(Mapper, TellsWhichPlaceWasNotSeen) {
+  Mapper mapper({}, 0.3, known(), nullptr);
+  std::vector<Vec3> places{kHere, {1, 0, 1.5}, {2, 0, 1.5}, {5, 0, 1.5}, {1, 0, 1.5}};
+  EXPECT_EQ(mapper.first_unseen(places), 1U) << "where it is it may stay";
+  CloudJob job = plate(4.1, 0.0);
+  mapper.put(job);
+  EXPECT_EQ(mapper.first_unseen(places), 3U);
+  EXPECT_EQ(mapper.first_unseen(std::span(places).first(3)), 3U) << "none";
+  job.shift = {0, 0, 5};
+  for (Vec3* place : {&job.sensor, &job.vehicle}) *place += job.shift;
+  for (Eigen::Vector3f& point : job.points) point += job.shift.cast<float>();
+  mapper.put(job);
+  EXPECT_EQ(mapper.first_unseen(places), 1U);
+  for (Vec3& place : places) place += job.shift;
+  EXPECT_EQ(mapper.first_unseen(places), 3U);
 }
 
 TEST(Mapper, AMapThatIsTheSameStaysTheSame) {

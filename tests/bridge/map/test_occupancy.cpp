@@ -308,6 +308,26 @@ TEST(Occupancy, AColumnIsFreeAsFarAsItWasSeen) {
   EXPECT_LE(ahead.low, 1.1);
 }
 
+TEST(Occupancy, APlaceIsKnownWhereAllOfItWasSeen) {
+  const Vec3 far(100, 0, 0);
+  Occupancy grid({});
+  EXPECT_FALSE(grid.is_known(kHome, 0.3, far));
+  for (int i = 0; i < 3; ++i) grid.insert(seen(wall(6.0)));
+  EXPECT_TRUE(grid.is_known({4.0, 0.1, 1.5}, 0.3, far));
+  EXPECT_FALSE(grid.is_known({4.0, 0.1, 1.5}, 1.5, far)) << "the rays went through a part of it";
+  EXPECT_FALSE(grid.is_known({7.0, 0.1, 1.5}, 0.3, far)) << "behind the wall";
+  EXPECT_FALSE(grid.is_known({-2.0, 0.1, 1.5}, 0.3, far)) << "where nobody looked";
+  EXPECT_FALSE(grid.is_known({1000, 0, 0}, 0.3, far)) << "out of the window";
+  grid.free_around({-2.0, 0.1, 1.5}, 0.4);
+  EXPECT_TRUE(grid.is_known({-2.0, 0.1, 1.5}, 0.3, far));
+  // Who is near to what is unknown may stay, and go away from it, but no nearer.
+  const Vec3 edge(-2.2, 0.1, 1.5);
+  EXPECT_FALSE(grid.is_known(edge, 0.4, far));
+  EXPECT_TRUE(grid.is_known(edge, 0.4, edge));
+  EXPECT_TRUE(grid.is_known(edge + Vec3(0.1, 0, 0), 0.3, edge));
+  EXPECT_FALSE(grid.is_known(edge - Vec3(0.01, 0, 0), 0.4, edge));
+}
+
 TEST(Occupancy, RefusesSettingsThatAreNone) {
   EXPECT_THROW(Occupancy({0.0, 60.0}), std::invalid_argument);
   EXPECT_THROW(Occupancy({26.0, 60.0}), std::invalid_argument);

@@ -53,6 +53,23 @@ TEST(Contingency, IsTheStraightStopWhereThatStaysFree) {
   EXPECT_TRUE(stop.verification.free());
 }
 
+TEST(Contingency, LeavesOutWhatIsNotAllowed) {
+  PathRequest r = moving();
+  const std::vector<base::Track> comes{mover(straight_stop().back().position + Vec3(8, 0, 0), Vec3(-2, 0, 0))};
+  r.tracks = comes;
+  Contingency contingency(kSettings);
+  const std::vector<base::TimedPath> straight{straight_stop()};
+  const Vec3 highest = contingency.choose(r, straight).path.back().position;
+  ASSERT_GT(highest.z(), r.position.z() + 0.5) << "it climbs, where it may";
+  const auto stays_low = [&](const base::TimedPath& path) { return path.back().position.z() < r.position.z() + 0.5; };
+  const Stop low = contingency.choose(r, straight, stays_low);
+  EXPECT_TRUE(low.verification.free());
+  EXPECT_TRUE(stays_low(low.path));
+  const Stop none = contingency.choose(r, straight, [](const auto&) { return false; });
+  EXPECT_EQ(none.choice, 0) << "what is given is not asked for";
+  EXPECT_FALSE(none.verification.free());
+}
+
 // What comes where the vehicle would stand, even long after it has stopped.
 TEST(Contingency, GetsOutOfTheWayOfWhatComesWhereItWouldStand) {
   for (const Vec3& velocity : {Vec3(-2, 0, 0), Vec3(0, 1, 0), Vec3(0, -3, 0), Vec3(0, 0, 2), Vec3(0, 0, -1)}) {
