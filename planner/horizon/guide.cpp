@@ -148,6 +148,10 @@ void Guide::begin_way(std::vector<Vec3> way) {
   way_ = std::move(way);
   progress_.begin_anew();
   taken_ = false;
+  forget_others();
+}
+
+void Guide::forget_others() {
   wants_others_ = false;
   other_search_ = {};
   tries_ = 0;

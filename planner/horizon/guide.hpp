@@ -45,6 +45,8 @@ class Guide {
   /// Something that moves is in the way, or straight on: the next calls of lead() look for others, which pass what
   /// stands on other sides and are at most 1.5 times as long, and for as many places of the grid again.
   void want_others() { wants_others_ = true; }
+  /// It is gone.
+  void forget_others();
   /// Those that were found, from beside the vehicle.
   [[nodiscard]] std::span<const std::vector<Vec3>> others() const { return others_; }
   /// As lead() has led, along one of the others; `request` is as it was given to lead().

@@ -56,9 +56,10 @@ double arrival(const verify::Plan& plan, std::span<const Vec3> way, double cruis
 }  // namespace
 
 GuidedPlanner::Surroundings GuidedPlanner::surround(PathRequest& request) const {
-  Surroundings around{{request.tracks.begin(), request.tracks.end()},
-                      {request.standing.begin(), request.standing.end()},
-                      {guide_.standing().begin(), guide_.standing().end()}};
+  Surroundings around{{}, {}, {guide_.standing().begin(), guide_.standing().end()}};
+  if (around.ids.empty()) return around;
+  around.tracks.assign(request.tracks.begin(), request.tracks.end());
+  around.standing.assign(request.standing.begin(), request.standing.end());
   set_apart(around.ids, around.tracks, around.standing);
   request.tracks = around.tracks;
   request.standing = around.standing;
@@ -81,6 +82,7 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
   const Vec3 held_at = known_end(best).position;
   const bool is_held = (held_at - given.position).norm() < kHeld && is_crossed(request, held_at, best.horizon);
   if (!is_held || earliest <= left_along(way, given.position) / cruise + kPatience) {
+    if (blocked_since_) guide_.forget_others();
     blocked_since_.reset();
     return best;
   }

@@ -27,7 +27,8 @@ class GuidedPlanner {
   /// HorizonPlanner::plan(), for the request as Guide::lead() makes it at `now`, s. Where plans lose
   /// more than 2 s on their way within the next 4 m for half a second, and something moves there, there is one more for
   /// each other way that has been found since; it is taken where it arrives a second earlier, as far as that can be
-  /// told. `request` becomes that of the plan: its tracks are this object's, until the next call.
+  /// told. `request` becomes that of the plan: its tracks are this object's, until the next call, or
+  /// those given.
   verify::Plan plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
                     std::uint64_t seed, std::uint64_t number, const base::Budget& budget, base::WorkerPool& pool);
 
@@ -35,7 +36,7 @@ class GuidedPlanner {
   [[nodiscard]] std::span<const std::uint64_t> standing() const { return around_.ids; }
 
  private:
-  /// What a request refers to.
+  /// What a request refers to where some tracks are taken for what stands.
   struct Surroundings {
     std::vector<base::Track> tracks, standing;
     std::vector<std::uint64_t> ids;  // of those that were taken from the tracks

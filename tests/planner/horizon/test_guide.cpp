@@ -228,6 +228,11 @@ TEST(Guide, FindsOtherWaysWhenThatIsWanted) {
     guide.lead_along(0, other);
     EXPECT_GT(other.target.y(), 4.0);
     EXPECT_GT(clearance_of(tracks, other.position, other.way.front()), 0.0);
+    guide.forget_others();
+    EXPECT_TRUE(guide.others().empty());
+    guide.want_others();
+    for (int n = 0; n < 8; ++n) guide.lead(request = asked(), 0.9);
+    ASSERT_EQ(guide.others().size(), 1U) << "again";
     guide.take(0);
     EXPECT_TRUE(guide.others().empty());
     request = asked();
