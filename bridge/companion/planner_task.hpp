@@ -76,6 +76,8 @@ struct PlanResult {
                                                         const planner::base::HorizonSettings& settings) {
   prediction::Obstacles obstacles = prediction::obstacles_of(job.tracks, job.forecasts, job.paths, settings.time,
                                                              settings.step, settings.acceleration_trust);
+  constexpr double kReach = 15.0;  // m, farther off a stop is seen in time
+  prediction::add_stops(obstacles.tracks, job.request.position, kReach, obstacles.paths);
   job.map.append_to(obstacles.standing);
   planner::horizon::set_apart(job.standing, obstacles.tracks, obstacles.standing);
   return obstacles;

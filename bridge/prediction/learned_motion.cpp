@@ -11,6 +11,12 @@ namespace jink::bridge::prediction {
 
 namespace {
 
+constexpr double kMoves = 0.3;       // m/s, from which on a track may stop
+constexpr double kSureSigmas = 2.0;  // of its velocity
+constexpr double kStopping = 4.0;    // m/s², at which it does: a walking person's
+constexpr double kSeenLater = 0.8;   // s, in which a vehicle reacts and brakes
+constexpr int kStopPoints = 4;       // of the path to the stop
+
 /// One axis of bouncing: folded back into the room as often as needed.
 double fold(double x, double least, double most) {
   const bool low = std::isfinite(least);
@@ -27,9 +33,8 @@ double fold(double x, double least, double most) {
   return x;
 }
 
-/// The track's plain prediction up to then. What its acceleration may be off by is left out: a forecast that is relied
-/// on has shown how the obstacle moves.
-planner::geometry::KnownPath plain_path(const planner::base::Track& track, double until, double step, double trust) {
+/// A track's, without points.
+planner::geometry::KnownPath path_of(const planner::base::Track& track, double until) {
   planner::geometry::KnownPath path;
   path.id = track.id;
   path.radius = track.radius;
@@ -38,6 +43,13 @@ planner::geometry::KnownPath plain_path(const planner::base::Track& track, doubl
   path.velocity_sigma = track.velocity_sigma;
   path.age = track.age;
   path.until = until;
+  return path;
+}
+
+/// The track's plain prediction up to then. What its acceleration may be off by is left out: a forecast that is relied
+/// on has shown how the obstacle moves.
+planner::geometry::KnownPath plain_path(const planner::base::Track& track, double until, double step, double trust) {
+  planner::geometry::KnownPath path = path_of(track, until);
   const int points = std::max(1, static_cast<int>(std::ceil(until / step))) + 1;
   path.points.reserve(static_cast<std::size_t>(points));
   for (int n = 0; n < points; ++n) {
@@ -121,6 +133,22 @@ Obstacles obstacles_of(std::span<const planner::base::Track> tracks, std::span<c
     if (!replaced[i]) result.tracks.push_back(tracks[i]);
   }
   return result;
+}
+
+void add_stops(std::span<const planner::base::Track> tracks, const Vec3& place, double reach,
+               std::vector<planner::geometry::KnownPath>& paths) {
+  for (const planner::base::Track& track : tracks) {
+    const double speed = track.velocity.norm();
+    if (speed < kMoves + kSureSigmas * track.velocity_sigma) continue;
+    if ((track.position - place).norm() - track.radius > reach) continue;
+    planner::geometry::KnownPath& path = paths.emplace_back(path_of(track, kSeenLater));
+    const double time = speed / kStopping;
+    for (int n = 0; n <= kStopPoints; ++n) {
+      const double t = time * n / kStopPoints;
+      path.points.push_back(
+          {t, track.position + (t - 0.5 * t * t / time) * track.velocity, Vec3::Zero(), Vec3::Zero()});
+    }
+  }
 }
 
 }  // namespace jink::bridge::prediction

@@ -69,4 +69,9 @@ struct Obstacles {
                                      std::span<const planner::geometry::KnownPath> paths, double horizon, double step,
                                      double trust);
 
+/// Appends, for each of the tracks that moves and is within `reach`, m, of a place, the path on which it stops at once,
+/// as people and what people drive may: counted for as long as a vehicle takes to see that and to brake.
+void add_stops(std::span<const planner::base::Track> tracks, const Vec3& place, double reach,
+               std::vector<planner::geometry::KnownPath>& paths);
+
 }  // namespace jink::bridge::prediction

@@ -380,6 +380,29 @@ TEST(MotionLearner, TurnsWhereOthersTurned) {
   EXPECT_LT((to_path(*forecast, 3.0, 0.1).position(2.5) - bouncing(2.5, -0.5)).norm(), 0.1);
 }
 
+TEST(ObstaclesOf, WhatMovesNearbyMayStop) {
+  std::vector<Track> tracks(4);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    tracks[i].id = 10 + i;
+    tracks[i].radius = 0.4;
+    tracks[i].position = {3, 0, 1};
+    tracks[i].velocity = {2, 0, 0};
+  }
+  tracks[1].velocity = {0.1, 0, 0};  // hardly moves
+  tracks[2].velocity_sigma = 1.0;    // may not move at all
+  tracks[3].position = {-20, 0, 1};  // far off
+  std::vector<planner::geometry::KnownPath> paths;
+  add_stops(tracks, {0, 0, 1}, 10.0, paths);
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_TRUE(planner::geometry::is_valid(paths[0]));
+  EXPECT_EQ(paths[0].id, 10U);
+  EXPECT_EQ(paths[0].radius, 0.4);
+  EXPECT_EQ(paths[0].points.front().position, tracks[0].position);
+  EXPECT_NEAR(paths[0].points.back().position.x(), 3.5, 1e-12) << "v² / 2a";
+  EXPECT_NEAR(paths[0].points.back().t, 0.5, 1e-12);
+  EXPECT_LT(paths[0].until, 1.0) << "it is seen by then";
+}
+
 TEST(ObstaclesOf, PlainPredictionStandsBesideAForecastForAsLongAsItCounts) {
   constexpr double kHorizon = 2.0, kTrust = 0.5;
   std::vector<Track> tracks(3);
