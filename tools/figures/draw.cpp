@@ -104,14 +104,15 @@ void run_gnuplot(const std::string& id, const fs::path& folder) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe.end(1), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, pipe.end(1), STDERR_FILENO);
-  // A Ctrl-C is for us, who end what was begun. (In a process group of its own it would still get one that comes while
-  // it is made.)
+  // In a process group of its own: a Ctrl-C is for us, who end what was begun. One that comes before it has that group
+  // waits for ever.
   sigset_t interrupt;
   sigemptyset(&interrupt);
   sigaddset(&interrupt, SIGINT);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setpgroup(&attributes, 0);
   posix_spawnattr_setsigmask(&attributes, &interrupt);
   pid_t child = -1;
   const int failure = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);

@@ -422,6 +422,18 @@ void fake_gnuplot(const Folder& folder, const std::string& text) {
 /// Ctrl-C in a terminal goes to all of its process group.
 TEST(Figure, CtrlCDoesNotReachGnuplot) {
   const Folder folder;
+  fake_gnuplot(folder, "cut -d' ' -f5 /proc/$$/stat > group; echo x > figure13.png; echo x > figure13.svg");
+  const Path path(folder.path().string() + ":/bin:/usr/bin");
+  ASSERT_EQ(failure(folder.path() / "out"), "drawn");
+  pid_t group = 0;
+  std::ifstream(folder.path() / "out" / "group") >> group;
+  EXPECT_GT(group, 0);
+  EXPECT_NE(group, ::getpgrp());
+}
+
+/// Nor does one that comes before gnuplot has a group of its own.
+TEST(Figure, CtrlCDoesNotEndAGnuplotThatIsBeingStarted) {
+  const Folder folder;
   fake_gnuplot(folder, "kill -INT $$; echo x > figure13.png; echo x > figure13.svg");
   const Path path(folder.path().string() + ":/bin:/usr/bin");
   EXPECT_EQ(failure(folder.path() / "out"), "drawn");
