@@ -45,12 +45,7 @@ planner::verify::Plan JobPlanner::plan(PlanJob& job, const planner::base::Budget
 }
 
 ThreadedPlanner::ThreadedPlanner(const PlannerTaskSettings& settings, const base::Clock& clock, base::Notifier* done)
-    : deadline_ms_(settings.horizon.deadline_ms),
-      generations_(settings.horizon.generations),
-      clock_(clock),
-      done_(done),
-      planner_(settings),
-      thread_([this](const std::stop_token& stop) { work(stop); }) {}
+    : clock_(clock), done_(done), planner_(settings), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 ThreadedPlanner::~ThreadedPlanner() {
   thread_.request_stop();
@@ -93,9 +88,10 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
     }
     try {
       const double begun = clock_.now();
-      const auto deadline = std::chrono::duration<double, std::milli>(deadline_ms_);
+      const planner::base::HorizonSettings& horizon = planner_.settings().horizon;
+      const auto deadline = std::chrono::duration<double, std::milli>(horizon.deadline_ms);
       const planner::base::Budget budget{
-          generations_,
+          horizon.generations,
           std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(deadline)};
       result.plan = planner_.plan(result.job, budget);
       result.ms = 1e3 * (clock_.now() - begun);
@@ -110,13 +106,14 @@ void ThreadedPlanner::work(const std::stop_token& stop) {
 }
 
 VirtualPlanner::VirtualPlanner(const PlannerTaskSettings& settings, double latency)
-    : generations_(settings.horizon.generations), latency_(latency), planner_(settings) {}
+    : latency_(latency), planner_(settings) {}
 
 void VirtualPlanner::start(PlanJob job) {
   assert(!result_);
   PlanResult& result = result_.emplace();
   result.job = std::move(job);
-  result.plan = planner_.plan(result.job, {generations_, planner::base::Budget::Time::max()});
+  result.plan =
+      planner_.plan(result.job, {planner_.settings().horizon.generations, planner::base::Budget::Time::max()});
   result.ms = 1e3 * latency_;
 }
 

@@ -120,6 +120,8 @@ class JobPlanner {
   explicit JobPlanner(const PlannerTaskSettings& settings);
   /// The job's request becomes the one that was planned for, without its obstacles.
   planner::verify::Plan plan(PlanJob& job, const planner::base::Budget& budget);
+  /// Those given at construction.
+  [[nodiscard]] const PlannerTaskSettings& settings() const { return settings_; }
 
  private:
   PlannerTaskSettings settings_;
@@ -137,15 +139,13 @@ class ThreadedPlanner final : public PlannerTask {
   ~ThreadedPlanner() override;
   void start(PlanJob job) override;
   [[nodiscard]] bool busy() const override;
-  [[nodiscard]] double latency() const override { return 1e-3 * deadline_ms_ + kHandling; }
+  [[nodiscard]] double latency() const override { return 1e-3 * planner_.settings().horizon.deadline_ms + kHandling; }
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:
   static constexpr double kHandling = 0.03;  // s: the last cycle after the deadline, and a turn of the loop
   void work(const std::stop_token& stop);
 
-  const double deadline_ms_;
-  const int generations_;
   const base::Clock& clock_;
   base::Notifier* done_;
   JobPlanner planner_;
@@ -168,7 +168,6 @@ class VirtualPlanner final : public PlannerTask {
   [[nodiscard]] std::optional<PlanResult> poll(double now) override;
 
  private:
-  const int generations_;
   const double latency_;
   JobPlanner planner_;
   std::optional<PlanResult> result_;

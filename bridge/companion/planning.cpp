@@ -114,7 +114,8 @@ void Planning::stay_in_seen(double now, const MotionControl& motion, PlanResult&
     stops.push_back(motion.stream().straight_stop(path.front()));
     const prediction::Obstacles obstacles = obstacles_of(result.job, settings_.horizon);
     set_obstacles(result.job, obstacles);
-    planner::horizon::Stop stop = contingency_.choose(result.job.request, stops, seen_alone());
+    planner::horizon::Stop stop = contingency_.choose(
+        result.job.request, stops, [this](const planner::base::TimedPath& other) { return is_seen(other); });
     forget_obstacles(result.job);
     path = std::move(stop.path);
     result.plan.verification = stop.verification;
@@ -129,10 +130,6 @@ void Planning::stay_in_seen(double now, const MotionControl& motion, PlanResult&
 
 bool Planning::is_seen(const planner::base::TimedPath& path) const {
   return sight_.leaves_seen(path) == planner::base::kInfinity;
-}
-
-std::function<bool(const planner::base::TimedPath&)> Planning::seen_alone() const {
-  return [this](const planner::base::TimedPath& path) { return is_seen(path); };
 }
 
 // From where the path ends straight down to the ground, as far ahead as plans look.
@@ -342,7 +339,8 @@ planner::base::TimedPath Planning::stop(double now, Intake& intake, const Motion
   look_at_map(intake.state(), job);
   const prediction::Obstacles obstacles = obstacles_of(job, settings_.horizon);
   set_obstacles(job, obstacles);
-  planner::horizon::Stop chosen = contingency_.choose(job.request, flown, seen_alone());
+  planner::horizon::Stop chosen =
+      contingency_.choose(job.request, flown, [this](const planner::base::TimedPath& other) { return is_seen(other); });
   reporter_.stops(now, chosen);
   for (planner::base::TimedPoint& point : chosen.path) point.t += now;
   return offset.taken_off(std::move(chosen.path));

@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <exception>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -81,7 +79,6 @@ class Planning {
   void stay_in_seen(double now, const MotionControl& motion, PlanResult& result);
   [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
   [[nodiscard]] bool is_seen(const planner::base::TimedPath& path) const;
-  [[nodiscard]] std::function<bool(const planner::base::TimedPath&)> seen_alone() const;
   [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);
 

@@ -11,8 +11,8 @@ namespace jink::bridge::map {
 namespace {
 
 constexpr double kGrown = Occupancy::kCell;  // m, by which what is tracked counts as larger: no trail is left of it
-constexpr double kUnseen = 0.1;              // m, beside the vehicle, that are to be seen, too
 constexpr double kSigmas = 2.0;              // of its position, likewise
+constexpr double kUnseen = 0.1;              // m, beside the vehicle, that are to be seen, too
 
 /// Something tracked, where it was.
 struct Tracked {

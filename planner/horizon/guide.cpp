@@ -10,6 +10,7 @@
 #include "planner/geometry/static_map.hpp"
 #include "planner/horizon/encounters.hpp"
 #include "planner/horizon/path_check.hpp"
+#include "planner/horizon/polyline.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -44,19 +45,6 @@ constexpr int kMostTries = 6;            // to find others
 constexpr std::size_t kMostOthers = 2;   // that are kept
 constexpr int kMissed = 8;               // places out of sight, after which none farther is looked at
 
-Vec3 nearest_on_line(const Vec3& place, const Vec3& from, const Vec3& to) {
-  const Vec3 way = to - from;
-  const double squared = way.squaredNorm();
-  const double share = squared > 0.0 ? std::clamp((place - from).dot(way) / squared, 0.0, 1.0) : 0.0;
-  return from + share * way;
-}
-
-double length_of(std::span<const Vec3> way) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
-  return length;
-}
-
 // Those of each leg that are not farther than `most` along the way.
 template <typename Visit>
 void for_each_place(std::span<const Vec3> way, double most, const Visit& visit) {
@@ -69,15 +57,6 @@ void for_each_place(std::span<const Vec3> way, double most, const Visit& visit) 
   }
 }
 
-Vec3 place_along(std::span<const Vec3> way, double along) {
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double length = (way[i] - way[i - 1]).norm();
-    if (along <= length && length > 0.0) return way[i - 1] + along / length * (way[i] - way[i - 1]);
-    along -= length;
-  }
-  return way.back();
-}
-
 // What swings rests where it turns: there its acceleration tells. In noise that is no more than a guess.
 bool rests(const base::Track& track) {
   return track.body.yaw_rate == 0.0 && track.velocity.norm() <= kAtRest + kSureSigmas * track.velocity_sigma &&
@@ -85,19 +64,6 @@ bool rests(const base::Track& track) {
 }
 
 }  // namespace
-
-double left_along(std::span<const Vec3> way, const Vec3& place) {
-  double least = (way.back() - place).norm();
-  double left = least;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const Vec3 nearest = nearest_on_line(place, way[i - 1], way[i]);
-    const double beside = (nearest - place).norm();
-    if (beside >= least) continue;
-    least = beside;
-    left = beside + (way[i] - nearest).norm() + length_of(way.subspan(i));
-  }
-  return left;
-}
 
 void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
   narrow_ = false;
@@ -298,12 +264,12 @@ std::optional<GridQuery::Column> Guide::gate_of(std::span<const Vec3> way, doubl
 
 // Nothing stands between places that are as far along both: one can be drawn over to the other.
 bool Guide::are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const {
-  const double most = std::max(length_of(a), length_of(b));
-  const int places = 1 + static_cast<int>(most / kSample);
+  const double length_a = length_of(a);
+  const double length_b = length_of(b);
+  const int places = 1 + static_cast<int>(std::max(length_a, length_b) / kSample);
   for (int n = 1; n < places; ++n) {
     const double share = static_cast<double>(n) / places;
-    if (!standing_.is_clear(place_along(a, share * length_of(a)), place_along(b, share * length_of(b)), 0.0))
-      return false;
+    if (!standing_.is_clear(place_along(a, share * length_a), place_along(b, share * length_b), 0.0)) return false;
   }
   return true;
 }

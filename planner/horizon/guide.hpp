@@ -17,9 +17,6 @@
 
 namespace jink::planner::horizon {
 
-/// What is left of a way from beside a place, and the way to it, m. Precondition: the way is not empty.
-[[nodiscard]] double left_along(std::span<const Vec3> way, const Vec3& place);
-
 /// Leads one flight. Not thread-safe. The same bits for the same calls.
 class Guide {
  public:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/polyline.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -80,8 +81,8 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
   double earliest = arrival(best, way, cruise);
   // Farther ahead a narrow place looks closed, until the margin gives way there.
   const Vec3 held_at = known_end(best).position;
-  const bool is_held = (held_at - given.position).norm() < kHeld && is_crossed(request, held_at, best.horizon);
-  if (!is_held || earliest <= left_along(way, given.position) / cruise + kPatience) {
+  const bool loses = earliest > left_along(way, given.position) / cruise + kPatience;
+  if (!loses || (held_at - given.position).norm() >= kHeld || !is_crossed(request, held_at, best.horizon)) {
     if (blocked_since_) guide_.forget_others();
     blocked_since_.reset();
     return best;

@@ -10,6 +10,7 @@
 #include "planner/horizon/encounters.hpp"
 #include "planner/horizon/gaps.hpp"
 #include "planner/horizon/path_scene.hpp"
+#include "planner/horizon/polyline.hpp"
 
 namespace jink::planner::horizon {
 namespace {
@@ -102,18 +103,10 @@ base::TimedPath warped(const base::TimedPath& unobstructed, std::span<const doub
 
 /// From the vehicle along the request's way at a speed, m/s, as far as it leads.
 base::TimedPath along_way(const PathRequest& request, std::span<const double> times, double speed) {
+  std::vector<Vec3> way{request.position};
+  way.insert(way.end(), request.way.begin(), request.way.end());
   base::TimedPath path;
-  for (const double time : times) {
-    Vec3 place = request.position;
-    double left = speed * time;
-    for (std::size_t i = 0; i < request.way.size() && left > 0.0; ++i) {
-      const Vec3 leg = request.way[i] - place;
-      const double length = leg.norm();
-      place = length > left ? Vec3(place + left / length * leg) : request.way[i];
-      left -= length;
-    }
-    path.push_back({time, place, Vec3::Zero(), Vec3::Zero()});
-  }
+  for (const double time : times) path.push_back({time, place_along(way, speed * time), Vec3::Zero(), Vec3::Zero()});
   return path;
 }
 

@@ -12,31 +12,24 @@
 
 #include "planner/base/solid.hpp"
 #include "planner/geometry/validity.hpp"
+#include "planner/horizon/polyline.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace jink::planner::horizon {
 namespace {
 
+using support::box;
+using support::numbered;
+using support::wall_with_two_doors;
+
 constexpr double kVehicle = 0.3;
 constexpr double kKept = 0.35;
-
-base::Track box(const Vec3& center, const Vec3& edges) {
-  base::Track track;
-  track.position = center;
-  track.body.solid = base::Solid::box(edges, {});
-  track.radius = track.body.solid->reach();
-  return track;
-}
 
 /// A wall across at x, higher than the volume, with a door of some width about y.
 std::vector<base::Track> wall(double x, double y, double width) {
   const double left = 20.0 - (y + 0.5 * width);
   const double right = 20.0 + (y - 0.5 * width);
   return {box({x, 20.0 - 0.5 * left, 4}, {0.2, left, 12}), box({x, -20.0 + 0.5 * right, 4}, {0.2, right, 12})};
-}
-
-std::vector<base::Track> numbered(std::vector<base::Track> tracks) {
-  for (std::size_t i = 0; i < tracks.size(); ++i) tracks[i].id = i + 1;
-  return tracks;
 }
 
 /// Three walls: in front, to the left, to the right.
@@ -199,15 +192,9 @@ TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
   EXPECT_EQ(request.margin_beside_standing(), kKept);
 }
 
-/// A wall across at x, higher than the volume, with two doors of 1.3 m, about y = 0 and y = 6.
-std::vector<base::Track> wall_with_two_doors(double x) {
-  return numbered(
-      {box({x, -10.325, 4}, {0.2, 19.35, 12}), box({x, 3, 4}, {0.2, 4.7, 12}), box({x, 13.325, 4}, {0.2, 13.35, 12})});
-}
-
 // Through the other door: not beside what is in the first one, nor round a block that stands free.
 TEST(Guide, FindsOtherWaysWhenThatIsWanted) {
-  std::vector<base::Track> tracks = wall_with_two_doors(10);
+  std::vector<base::Track> tracks = wall_with_two_doors(10, 6);
   for (const double y : {0.0, 0.5}) {
     SCOPED_TRACE(y);
     const auto asked = [&] { return guide_request(tracks, {5, y, 2}); };

@@ -5,25 +5,16 @@
 
 #include <vector>
 
-#include "planner/base/solid.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace jink::planner::horizon {
 namespace {
 
-base::Track numbered_box(std::uint64_t id, const Vec3& center, const Vec3& edges) {
-  base::Track track;
-  track.id = id;
-  track.position = center;
-  track.body.solid = base::Solid::box(edges, {});
-  track.radius = track.body.solid->reach();
-  return track;
-}
-
-/// A wall with doors about y = 0 and y = 7; something creeps through the first one.
+/// Something creeps through the first door.
 std::vector<base::Track> two_doors() {
-  std::vector<base::Track> tracks{
-      numbered_box(1, {10, -10.325, 4}, {0.2, 19.35, 12}), numbered_box(2, {10, 3.5, 4}, {0.2, 5.7, 12}),
-      numbered_box(3, {10, 13.825, 4}, {0.2, 12.35, 12}), numbered_box(9, {10, -0.1, 4}, {0.8, 1.1, 12})};
+  std::vector<base::Track> tracks = support::wall_with_two_doors(10, 7);
+  tracks.push_back(support::box({10, -0.1, 4}, {0.8, 1.1, 12}));
+  tracks.back().id = 9;
   tracks.back().velocity = {0, 0.11, 0};
   return tracks;
 }
