@@ -86,9 +86,11 @@ struct CostLanes {
 
   /// From an obstacle in step j of the stretch.
   [[gnu::always_inline]] void keep_away(const NearbyObstacle& obstacle, std::size_t j, double weight) {
+    if (!stretch.may_meet(obstacle, j)) return;
     if (obstacle.solid >= 0) {
-      clearance.add_solid(obstacle, obstacles.solid(obstacle), stretch.places[j], stretch.places[j + 1], weight);
-    } else if (stretch.may_meet(obstacle, j)) {
+      clearance.add_solid(obstacle, obstacles.solid(obstacle), stretch.places[j], stretch.places[j + 1],
+                          stretch.moved[j], weight);
+    } else {
       clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], weight);
     }
   }

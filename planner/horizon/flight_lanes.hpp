@@ -27,6 +27,7 @@ struct FlightLanes {
       : scene(scene_), x(x_) {
     position.set(scene.position);
     velocity.set(scene.velocity);
+    wished.set(Vec3::Zero());
   }
 
   /// ENU offset from unobstructed flight at the leg's end, moved into the volume where it leads out of it.

@@ -14,7 +14,12 @@ namespace jink::planner::horizon {
 /// One number for each lane.
 template <std::size_t kLanes>
 struct alignas(kLanes >= 4 ? 32 : 8) Lanes {
-  std::array<double, kLanes> at{};  ///< by lane
+  std::array<double, kLanes> at;  ///< by lane
+
+  /// Any numbers: setting them would take as long as the work that is done on them.
+  Lanes() {}  // NOLINT(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default): set by who uses it
+  /// The same number in every lane.
+  [[gnu::always_inline]] explicit Lanes(double value) { at.fill(value); }
 
   /// The number of lane i < kLanes.
   [[gnu::always_inline]] double& operator[](std::size_t i) { return at[i]; }

@@ -16,17 +16,12 @@ namespace jink::planner::horizon {
 /// How far paths lead, and how long they take to the target.
 template <std::size_t kLanes>
 struct TravelLanes {
-  Lanes<kLanes> length,  ///< flown, m
-      deviation,         ///< distance from unobstructed flight, summed over the steps, m
-      arrival,           ///< end of the last step that did not end near the target, s
-      stay,              ///< steps for which it has been at the target
-      visited,           ///< 1 once it has stayed there, where that is enough, else 0
-      counts;            ///< 0 where it had by the end of the last stretch, else 1
-
-  /// Nothing flown yet.
-  [[gnu::always_inline]] TravelLanes() {
-    for (std::size_t i = 0; i < kLanes; ++i) counts[i] = 1.0;
-  }
+  Lanes<kLanes> length{0.0},  ///< flown, m
+      deviation{0.0},         ///< distance from unobstructed flight, summed over the steps, m
+      arrival{0.0},           ///< end of the last step that did not end near the target, s
+      stay{0.0},              ///< steps for which it has been at the target
+      visited{0.0},           ///< 1 once it has stayed there, where that is enough, else 0
+      counts{1.0};            ///< 0 where it had by the end of the last stretch, else 1
 
   /// A step over `moved` to `to`, at whose end unobstructed flight is at `unobstructed`.
   [[gnu::always_inline]] void add(const PointLanes<kLanes>& to, const Lanes<kLanes>& moved, const Vec3& unobstructed) {
@@ -79,10 +74,10 @@ struct TravelLanes {
 /// How paths turn between their legs.
 template <std::size_t kLanes>
 struct SteeringLanes {
-  PointLanes<kLanes> corner,  ///< where the last leg ended
-      direction;              ///< the last leg's way, m; before the first leg the velocity
-  Lanes<kLanes> steering;     ///< sum of the angles between legs, Eq. (3), rad
-  double shortest = 0.0;      ///< leg that is turned at, m
+  PointLanes<kLanes> corner,    ///< where the last leg ended
+      direction;                ///< the last leg's way, m; before the first leg the velocity
+  Lanes<kLanes> steering{0.0};  ///< sum of the angles between legs, Eq. (3), rad
+  double shortest = 0.0;        ///< leg that is turned at, m
 
   /// Begins at `start` with the scene's velocity.
   [[gnu::always_inline]] SteeringLanes(const PointLanes<kLanes>& start, const PathScene& scene)
@@ -132,8 +127,8 @@ struct SteeringLanes {
 /// How near paths come to what they are to keep away from.
 template <std::size_t kLanes>
 struct ClearanceLanes {
-  Lanes<kLanes> dip,  ///< into the soft distances, as f3 counts it
-      violation;      ///< of the hard distances and the volume
+  Lanes<kLanes> dip{0.0},  ///< into the soft distances, as f3 counts it
+      violation{0.0};      ///< of the hard distances and the volume
 
   /// Violation for one step that ends at `to`: the distance outside the volume times the step's duration, m s.
   [[gnu::always_inline]] void add_outside(const PathScene& scene, const PointLanes<kLanes>& to) {
@@ -170,32 +165,25 @@ struct ClearanceLanes {
     }
   }
 
-  /// The same for a solid, for those lanes alone that may come near: from halfway a distance changes by no more than
-  /// the place does.
+  /// The same for a solid in a step over `moved`, for those lanes alone that may come near.
   [[gnu::always_inline]] void add_solid(const NearbyObstacle& obstacle, const NearbySolid& solid,
-                                        const PointLanes<kLanes>& from, const PointLanes<kLanes>& to, double weight) {
-    constexpr double kRounding = 1e-6;  // m, far above rounding
+                                        const PointLanes<kLanes>& from, const PointLanes<kLanes>& to,
+                                        const Lanes<kLanes>& moved, double weight) {
     constexpr std::size_t kPart = kLanes < 4 ? kLanes : 4;
-    PointLanes<kLanes> a, b;
-    Lanes<kLanes> half, least;
-    solid.from.to_own(from, a);
-    solid.to.to_own(to, b);
+    PointLanes<kLanes> middle;
+    Lanes<kLanes> limit, sign;
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const double x = 0.5 * (b.x[i] - a.x[i]);
-      const double y = 0.5 * (b.y[i] - a.y[i]);
-      const double z = 0.5 * (b.z[i] - a.z[i]);
-      a.x[i] += x;
-      a.y[i] += y;
-      a.z[i] += z;
-      half[i] = std::sqrt(x * x + y * y + z * z);
+      middle.x[i] = 0.5 * (from.x[i] + to.x[i]);
+      middle.y[i] = 0.5 * (from.y[i] + to.y[i]);
+      middle.z[i] = 0.5 * (from.z[i] + to.z[i]);
+      limit[i] = solid.near + 0.5 * moved[i];
     }
-    solid.from.distances(a, least);
-    for (std::size_t i = 0; i < kLanes; ++i) least[i] -= half[i];
-    const double kept = obstacle.soft - solid.radius + kRounding;
+    solid.middle.to_own(middle, middle);
+    solid.middle.within(middle, limit, sign);
     for (std::size_t first = 0; first < kLanes; first += kPart) {
       Lanes<kPart> part;
-      for (std::size_t i = 0; i < kPart; ++i) part[i] = least[first + i];
-      if (smallest(part) < kept) add_near<kPart>(obstacle, solid, from, to, first, weight);
+      for (std::size_t i = 0; i < kPart; ++i) part[i] = sign[first + i];
+      if (smallest(part) < 0.0) add_near<kPart>(obstacle, solid, from, to, first, weight);
     }
   }
 
@@ -227,7 +215,7 @@ struct ClearanceLanes {
   [[gnu::always_inline]] void add_near(const NearbyObstacle& obstacle, const NearbySolid& solid,
                                        const PointLanes<kLanes>& from, const PointLanes<kLanes>& to, std::size_t first,
                                        double weight) {
-    constexpr std::size_t kPlaces = 4;
+    constexpr std::size_t kPlaces = 3;
     PointLanes<kPart> a, b;
     Lanes<kPart> least;
     a.copy(from, first);

@@ -95,33 +95,44 @@ class PathMotion {
   double fastest_;
 };
 
-/// The solid of what moves so, during step n, to be kept `soft` away from its centre's sphere.
+/// What turns by `turn` in a step, rad, while a vehicle and it move by `moved` against each other, is measured as if
+/// the place in its own axes changed evenly. That strays by at most the distance from its middle times q = turn² / 8,
+/// the arc beyond the chord, and moved times turn / 4: so much more is to be kept from it, where `size` is the distance
+/// to its middle and its own reach.
+double turning_slack(double turn, double moved, double size) {
+  const double q = 0.125 * turn * turn;
+  return q < 0.5 ? (size * q + 0.25 * turn * moved) / (1.0 - q) : base::kInfinity;
+}
+
+/// The solid of what moves so, where it is during step n, to be looked at by who is within `kept` of it.
 template <typename Motion>
-NearbySolid solid_during(const Motion& motion, double step, std::size_t n, double soft) {
-  const base::Body& body = motion.body();
+NearbySolid solid_during(const Motion& motion, const NearbyObstacle& obstacle, double step, std::size_t n,
+                         double kept) {
   const double begin = step * static_cast<double>(n);
   const double end = step * static_cast<double>(n + 1);
-  const Vec3 from = motion.position(begin);
-  const Vec3 to = motion.position(end);
-  NearbySolid solid{{body, from, begin}, {body, to, end}, motion.radius(), {}};
-  const double kept = soft - solid.radius + kSlack;
-  if (body.yaw_rate != 0.0) {
-    solid.keep_out = {Vec3::Constant(-base::kInfinity), Vec3::Constant(base::kInfinity)};
-    return solid;
-  }
   base::Track there;
-  there.position = from;
-  there.body = body;
-  const base::Box box = geometry::grown(geometry::box_around(there), kept);
-  solid.keep_out = united(box, {box.min + (to - from), box.max + (to - from)});
-  return solid;
+  there.body = motion.body();
+  there.position = obstacle.from;
+  there.body.yaw += begin * there.body.yaw_rate;
+  const base::Box before = geometry::box_around(there);
+  there.position = obstacle.to;
+  there.body.yaw += step * there.body.yaw_rate;
+  // No part of it is farther from where it is halfway than this.
+  const double strays =
+      0.5 * ((obstacle.to - obstacle.from).norm() + std::abs(motion.body().yaw_rate) * step * motion.radius());
+  return {{motion.body(), obstacle.from, begin},
+          {motion.body(), obstacle.middle, 0.5 * (begin + end)},
+          {motion.body(), obstacle.to, end},
+          motion.radius(),
+          kept + strays,
+          geometry::grown(united(before, geometry::box_around(there)), kept)};
 }
 
 }  // namespace
 
 void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
                             std::span<const base::Track> standing, const Clearance& clearance, double step,
-                            std::span<const base::Box> where) {
+                            double fastest, std::span<const base::Box> where) {
   groups_.clear();
   found_.clear();
   solids_.clear();
@@ -137,9 +148,9 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
     groups_.push_back(group);
   }
   for (const base::Track& track : tracks) {
-    add(TrackMotion(track, clearance.acceleration_trust), clearance, step, where, everywhere);
+    add(TrackMotion(track, clearance.acceleration_trust), clearance, step, fastest, where, everywhere);
   }
-  for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, where, everywhere);
+  for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, fastest, where, everywhere);
   for (const base::Track& track : standing) add_standing(track, clearance, where, everywhere);
 
   begin_.assign(where.size() + 1, 0);
@@ -151,20 +162,25 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
 }
 
 template <typename Motion>
-void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, double step,
+void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, double step, double fastest,
                           std::span<const base::Box> where, const base::Box& everywhere) {
   const double horizon = step * static_cast<double>(where.size());
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
-  const double ever = hard + clearance.limit + speed * horizon + most_bend + kSlack;
+  const bool is_solid = motion.body().solid != nullptr;
+  const double passed = (speed + fastest) * step;
+  const double slack = kSlack + (is_solid ? turning_slack(std::abs(motion.body().yaw_rate) * step, passed,
+                                                          hard + clearance.limit + most_bend + motion.radius())
+                                          : 0.0);
+  const double ever = hard + clearance.limit + speed * horizon + most_bend + slack;
   if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;
   const std::size_t before = found_.size();
   for (const Group& group : groups_) {
     const double begin = step * static_cast<double>(group.first);
     if (begin >= motion.until()) break;
     const double half = 0.5 * step * static_cast<double>(group.last - group.first);
-    const double wanted = hard + clearance.limit + speed * half + most_bend + kSlack;
+    const double wanted = hard + clearance.limit + speed * half + most_bend + slack;
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
@@ -175,19 +191,19 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.middle = 0.5 * (obstacle.from + obstacle.to);
       const double moved = 0.5 * (obstacle.to - obstacle.from).norm();
       const double bent = hard + motion.bend(static_cast<double>(n) * step, end);
-      const double most = bent + clearance.limit + moved + kSlack;
+      const double most = bent + clearance.limit + moved + slack;
       const double distance = squared_distance(obstacle.middle, where[n]);
       if (distance >= most * most) continue;
       obstacle.hard = bent;
       obstacle.soft = bent + motion.uncertainty(clearance, end);
-      obstacle.near = obstacle.soft + moved + kSlack;
+      obstacle.near = obstacle.soft + moved + slack;
       obstacle.near_squared = obstacle.near * obstacle.near;
       if (distance >= obstacle.near_squared) continue;
-      if (motion.body().solid != nullptr) {
-        const NearbySolid solid = solid_during(motion, step, n, obstacle.soft);
-        if (geometry::distance(where[n], solid.keep_out) > 0.0) continue;
+      if (is_solid) {
+        const NearbySolid placed = solid_during(motion, obstacle, step, n, obstacle.soft - motion.radius() + slack);
+        if (geometry::distance(where[n], placed.keep_out) > 0.0) continue;
         obstacle.solid = static_cast<int>(solids_.size());
-        solids_.push_back(solid);
+        solids_.push_back(placed);
       }
       found_.push_back(obstacle);
       step_.push_back(n);
@@ -211,7 +227,7 @@ void NearbyObstacles::add_standing(const base::Track& track, const Clearance& cl
   if (std::none_of(where.begin(), where.end(), meets)) return;
   if (const PlacedSolid solid(track.body, track.position, 0.0); !solid.is_none()) {
     obstacle.solid = static_cast<int>(solids_.size());
-    solids_.push_back({solid, solid, track.radius, box});
+    solids_.push_back({solid, solid, solid, track.radius, obstacle.near - track.radius, box});
   }
   standing_.push_back(obstacle);
   boxes_.push_back(box);

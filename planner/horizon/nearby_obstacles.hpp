@@ -39,20 +39,23 @@ struct NearbyObstacle {
 /// A solid during one step. Of its distances `radius` is taken off those of NearbyObstacle, which are from the centre.
 struct NearbySolid {
   PlacedSolid from,     ///< when the step begins
+      middle,           ///< halfway
       to;               ///< when the step ends
   double radius = 0.0;  ///< of the sphere that it is in, its margin not counted, m
-  base::Box keep_out;   ///< out of which the soft distance is kept throughout the step; of one that turns everywhere
+  double near = 0.0;  ///< m; farther from it halfway by half of the vehicle's way, the soft distance is kept throughout
+  base::Box keep_out;  ///< out of which the soft distance is kept throughout the step
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
 /// thread-safe while build() runs; keeps its memory from one build to the next.
 class NearbyObstacles {
  public:
-  /// `where[n]` holds the vehicle from time n·step to (n + 1)·step. Tracks are valid at time 0, and so are the offsets
-  /// of the known paths. Within a step they keep their order, tracks first. O(tracks + near tracks · steps + points of
-  /// the known paths + what stands), and for each near known path O(steps · log(points)).
+  /// `where[n]` holds the vehicle from time n·step to (n + 1)·step, in which it moves evenly, by no more than `fastest`
+  /// m/s. Tracks are valid at time 0, and so are the offsets of the known paths. Within a step they keep their order,
+  /// tracks first. O(tracks + near tracks · steps + points of the known paths + what stands), and for each near known
+  /// path O(steps · log(points)).
   void build(std::span<const base::Track> tracks, std::span<const geometry::KnownPath> paths,
-             std::span<const base::Track> standing, const Clearance& clearance, double step,
+             std::span<const base::Track> standing, const Clearance& clearance, double step, double fastest,
              std::span<const base::Box> where);
 
   /// The obstacles of one step but for what stands, 0 <= step < where.size() of the last build(); valid until the next.
@@ -78,8 +81,8 @@ class NearbyObstacles {
     base::Box where;
   };
   template <typename Motion>
-  void add(const Motion& motion, const Clearance& clearance, double step, std::span<const base::Box> where,
-           const base::Box& everywhere);
+  void add(const Motion& motion, const Clearance& clearance, double step, double fastest,
+           std::span<const base::Box> where, const base::Box& everywhere);
   void add_standing(const base::Track& track, const Clearance& clearance, std::span<const base::Box> where,
                     const base::Box& everywhere);
 

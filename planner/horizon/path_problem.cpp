@@ -139,7 +139,7 @@ void PathProblem::predict_obstacles() {
     where_[index(step)] = {before.min.cwiseMin(now.min), before.max.cwiseMax(now.max)};
     before = now;
   }
-  obstacles_.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step, where_);
+  obstacles_.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step, speed, where_);
 }
 
 // The lanes that are left over repeat the last solution.
@@ -285,11 +285,14 @@ optimizer::Cost PathProblem::cost_of(const base::TimedPath& path) const {
   std::vector<Vec3> positions(index(scene_.steps + 1));
   for (int n = 0; n <= scene_.steps; ++n) positions[index(n)] = base::sample(path, n * settings_.step).position;
   std::vector<base::Box> where(index(scene_.steps));
+  double most = 0.0;  // moved in a step, m
   for (std::size_t n = 0; n < where.size(); ++n) {
     where[n] = {positions[n].cwiseMin(positions[n + 1]), positions[n].cwiseMax(positions[n + 1])};
+    most = std::max(most, (positions[n + 1] - positions[n]).norm());
   }
   NearbyObstacles obstacles;
-  obstacles.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step, where);
+  obstacles.build(request_.tracks, request_.paths, request_.standing, clearance(), settings_.step,
+                  most / settings_.step, where);
   PointLanes<1> position;
   position.set(positions[0]);
   CostLanes<1> meter(scene_, obstacles, position);

@@ -51,22 +51,26 @@ class PlacedSolid {
   /// Places in the solid's own axes.
   template <std::size_t kLanes>
   [[gnu::always_inline]] void to_own(const PointLanes<kLanes>& places, PointLanes<kLanes>& own) const {
-    const Eigen::Matrix3d a = axes_;
-    const Vec3 shift = shift_;
+    // Number by number: a copy of the whole would be made in other registers than it is read in, which stalls.
+    const double xx = axes_(0, 0), xy = axes_(1, 0), xz = axes_(2, 0), x0 = shift_.x();
+    const double yx = axes_(0, 1), yy = axes_(1, 1), yz = axes_(2, 1), y0 = shift_.y();
+    const double zx = axes_(0, 2), zy = axes_(1, 2), zz = axes_(2, 2), z0 = shift_.z();
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double x = places.x[i];
       const double y = places.y[i];
       const double z = places.z[i];
-      own.x[i] = a(0, 0) * x + a(1, 0) * y + a(2, 0) * z - shift.x();
-      own.y[i] = a(0, 1) * x + a(1, 1) * y + a(2, 1) * z - shift.y();
-      own.z[i] = a(0, 2) * x + a(1, 2) * y + a(2, 2) * z - shift.z();
+      own.x[i] = xx * x + xy * y + xz * z - x0;
+      own.y[i] = yx * x + yy * y + yz * z - y0;
+      own.z[i] = zx * x + zy * y + zz * z - z0;
     }
   }
 
   /// distance() of places in the solid's own axes.
   template <std::size_t kLanes>
   [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
-    solid_->is_hull() ? Slabs(*solid_).distances(own, result) : Prism(*solid_).distances(own, result);
+    solid_->is_hull()        ? distances_of(Slabs(*solid_), own, result)
+    : solid_->corner() > 0.0 ? distances_of(Prism<true>(*solid_), own, result)
+                             : distances_of(Prism<false>(*solid_), own, result);
   }
 
   /// The smallest distance() of some places on each lane's line from `a` to `b`, in the solid's own axes: those in the
@@ -74,11 +78,26 @@ class PlacedSolid {
   template <std::size_t kPlaces, std::size_t kLanes>
   [[gnu::always_inline]] void least_distances(const PointLanes<kLanes>& a, const PointLanes<kLanes>& b,
                                               Lanes<kLanes>& least) const {
-    solid_->is_hull() ? least_of<kPlaces>(Slabs(*solid_), a, b, least) : least_of<kPlaces>(Prism(*solid_), a, b, least);
+    solid_->is_hull()        ? least_of<kPlaces>(Slabs(*solid_), a, b, least)
+    : solid_->corner() > 0.0 ? least_of<kPlaces>(Prism<true>(*solid_), a, b, least)
+                             : least_of<kPlaces>(Prism<false>(*solid_), a, b, least);
+  }
+
+  /// Below 0 for each lane whose place, in the solid's own axes, has a distance() of less than its limit, m, above 0.
+  template <std::size_t kLanes>
+  [[gnu::always_inline]] void within(const PointLanes<kLanes>& own, const Lanes<kLanes>& limit,
+                                     Lanes<kLanes>& sign) const {
+    solid_->is_hull()        ? within_of(Slabs(*solid_), own, limit, sign)
+    : solid_->corner() > 0.0 ? within_of(Prism<true>(*solid_), own, limit, sign)
+                             : within_of(Prism<false>(*solid_), own, limit, sign);
   }
 
  private:
-  // Without a branch, for loops over places. Beyond the rectangle by `away` on its plane, and by `up` upwards.
+  // Shapes measure without a branch, for loops over places: the squared distance outside, and what is at most 0 inside.
+  // The distance is the root of the one and the other; of several places, that of the least of both.
+
+  /// Where kCorner, its upright edges are rounded.
+  template <bool kCorner>
   struct Prism {
     double half_x, half_y, half_z, corner, rounding;
 
@@ -90,25 +109,40 @@ class PlacedSolid {
           rounding(solid.rounding()) {}
 
     template <std::size_t kLanes>
-    [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
+    [[gnu::always_inline]] void measure(const PointLanes<kLanes>& own, Lanes<kLanes>& squared,
+                                        Lanes<kLanes>& depth) const {
       for (std::size_t i = 0; i < kLanes; ++i) {
         const double x = std::abs(own.x[i]) - half_x;
         const double y = std::abs(own.y[i]) - half_y;
         const double up = std::abs(own.z[i]) - half_z;
-        const double away = outside(x, y) - corner;
-        result[i] = outside(away, up) - rounding;
+        const double over_x = x > 0.0 ? x : 0.0;
+        const double over_y = y > 0.0 ? y : 0.0;
+        const double over_up = up > 0.0 ? up : 0.0;
+        double level = over_x * over_x + over_y * over_y;  // on its plane, squared
+        double away = x > y ? x : y;                       // on its plane, where that is not above 0
+        if constexpr (kCorner) {
+          away = std::sqrt(level) + (away < 0.0 ? away : 0.0) - corner;
+          const double over = away > 0.0 ? away : 0.0;
+          level = over * over;
+        }
+        const double more = away > up ? away : up;
+        squared[i] = level + over_up * over_up;
+        depth[i] = more < 0.0 ? more : 0.0;
       }
     }
   };
 
   struct Slabs {
+    static constexpr double rounding = 0.0;
     std::span<const base::Solid::Slab> slabs;
 
     [[gnu::always_inline]] explicit Slabs(const base::Solid& solid) : slabs(solid.slabs()) {}
 
     template <std::size_t kLanes>
-    [[gnu::always_inline]] void distances(const PointLanes<kLanes>& own, Lanes<kLanes>& result) const {
-      for (std::size_t i = 0; i < kLanes; ++i) result[i] = -base::kInfinity;
+    [[gnu::always_inline]] void measure(const PointLanes<kLanes>& own, Lanes<kLanes>& squared,
+                                        Lanes<kLanes>& depth) const {
+      Lanes<kLanes> most;
+      for (std::size_t i = 0; i < kLanes; ++i) most[i] = -base::kInfinity;
       for (const base::Solid::Slab& slab : slabs) {
         const Vec3 n = slab.normal;
         for (std::size_t i = 0; i < kLanes; ++i) {
@@ -116,36 +150,55 @@ class PlacedSolid {
           const double above = along - slab.high;
           const double below = slab.low - along;
           const double more = above > below ? above : below;
-          result[i] = more > result[i] ? more : result[i];
+          most[i] = more > most[i] ? more : most[i];
         }
+      }
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const double over = most[i] > 0.0 ? most[i] : 0.0;
+        squared[i] = over * over;
+        depth[i] = most[i] < 0.0 ? most[i] : 0.0;
       }
     }
   };
 
+  template <std::size_t kLanes, typename Shape>
+  [[gnu::always_inline]] static void distances_of(const Shape& shape, const PointLanes<kLanes>& own,
+                                                  Lanes<kLanes>& result) {
+    Lanes<kLanes> squared, depth;
+    shape.measure(own, squared, depth);
+    for (std::size_t i = 0; i < kLanes; ++i) result[i] = std::sqrt(squared[i]) + depth[i] - shape.rounding;
+  }
+
   template <std::size_t kPlaces, std::size_t kLanes, typename Shape>
   [[gnu::always_inline]] static void least_of(const Shape& shape, const PointLanes<kLanes>& a,
                                               const PointLanes<kLanes>& b, Lanes<kLanes>& least) {
-    PointLanes<kLanes> place;
-    Lanes<kLanes> distance;
-    for (std::size_t i = 0; i < kLanes; ++i) least[i] = base::kInfinity;
+    PointLanes<kPlaces * kLanes> places;  // all at once: as many as are worked on elsewhere
+    Lanes<kPlaces * kLanes> squared, depth;
     for (std::size_t n = 0; n < kPlaces; ++n) {
       const double s = (0.5 + static_cast<double>(n)) / kPlaces;
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        place.x[i] = a.x[i] + s * (b.x[i] - a.x[i]);
-        place.y[i] = a.y[i] + s * (b.y[i] - a.y[i]);
-        place.z[i] = a.z[i] + s * (b.z[i] - a.z[i]);
-      }
-      shape.distances(place, distance);
-      for (std::size_t i = 0; i < kLanes; ++i) least[i] = distance[i] < least[i] ? distance[i] : least[i];
+      for (std::size_t i = 0; i < kLanes; ++i) places.x[n * kLanes + i] = a.x[i] + s * (b.x[i] - a.x[i]);
+      for (std::size_t i = 0; i < kLanes; ++i) places.y[n * kLanes + i] = a.y[i] + s * (b.y[i] - a.y[i]);
+      for (std::size_t i = 0; i < kLanes; ++i) places.z[n * kLanes + i] = a.z[i] + s * (b.z[i] - a.z[i]);
     }
+    shape.measure(places, squared, depth);
+    for (std::size_t n = 1; n < kPlaces; ++n) {
+      for (std::size_t i = 0; i < kLanes; ++i)
+        squared[i] = squared[n * kLanes + i] < squared[i] ? squared[n * kLanes + i] : squared[i];
+      for (std::size_t i = 0; i < kLanes; ++i)
+        depth[i] = depth[n * kLanes + i] < depth[i] ? depth[n * kLanes + i] : depth[i];
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) least[i] = std::sqrt(squared[i]) + depth[i] - shape.rounding;
   }
 
-  /// Of two distances beyond faces that are at right angles, one: the corner between them is round.
-  [[gnu::always_inline]] static double outside(double a, double b) {
-    const double over_a = a > 0.0 ? a : 0.0;
-    const double over_b = b > 0.0 ? b : 0.0;
-    const double more = a > b ? a : b;
-    return std::sqrt(over_a * over_a + over_b * over_b) + (more < 0.0 ? more : 0.0);
+  template <std::size_t kLanes, typename Shape>
+  [[gnu::always_inline]] static void within_of(const Shape& shape, const PointLanes<kLanes>& own,
+                                               const Lanes<kLanes>& limit, Lanes<kLanes>& sign) {
+    Lanes<kLanes> squared, depth;
+    shape.measure(own, squared, depth);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double reach = limit[i] + shape.rounding;
+      sign[i] = squared[i] < reach * reach ? -1.0 : 1.0;
+    }
   }
 
   const base::Solid* solid_ = nullptr;

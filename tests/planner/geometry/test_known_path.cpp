@@ -244,7 +244,7 @@ TEST(MetObstaclesOnKnownPaths, NeverMissesAny) {
     path.position_sigma = random.uniform(0.0, 0.2);
     path.velocity_sigma = random.uniform(0.0, 0.1);
     horizon::NearbyObstacles obstacles;
-    obstacles.build({}, {&path, 1}, {}, clearance, kStep, where);
+    obstacles.build({}, {&path, 1}, {}, clearance, kStep, 5.0, where);
     for (int n = 0; n < kSteps; ++n) {
       const auto during = obstacles.during(n);
       ASSERT_LE(during.size(), 1U);
@@ -280,8 +280,8 @@ TEST(MetObstaclesOnKnownPaths, SeesAStraightOneAsTheEquivalentTrack) {
     const std::vector<base::Box> where = growing({4, 0, 2}, 60, 0.1, 3.0);
     horizon::NearbyObstacles of_track;
     horizon::NearbyObstacles of_path;
-    of_track.build({&track, 1}, {}, {}, clearance, 0.1, where);
-    of_path.build({}, {&path, 1}, {}, clearance, 0.1, where);
+    of_track.build({&track, 1}, {}, {}, clearance, 0.1, 3.0, where);
+    of_path.build({}, {&path, 1}, {}, clearance, 0.1, 3.0, where);
     for (int n = 0; n < 60; ++n) {
       ASSERT_EQ(of_track.during(n).size(), of_path.during(n).size()) << seed << " step " << n;
       if (of_track.during(n).empty()) continue;
@@ -302,7 +302,7 @@ TEST(MetObstaclesOnKnownPaths, RegardsItUpToItsTimeAndGrowsItAfterItsEnd) {
   path.until = 3.05;
   const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.8, base::kInfinity};
   horizon::NearbyObstacles obstacles;
-  obstacles.build({}, {&path, 1}, {}, clearance, 0.1, growing(kZero, 60, 0.1, 3.0));
+  obstacles.build({}, {&path, 1}, {}, clearance, 0.1, 3.0, growing(kZero, 60, 0.1, 3.0));
   EXPECT_EQ(obstacles.obstacles(), 1U);
   EXPECT_EQ(obstacles.during(30).size(), 1U);
   EXPECT_TRUE(obstacles.during(31).empty());

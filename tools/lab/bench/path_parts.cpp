@@ -15,8 +15,10 @@ namespace {
 
 /// A request at time 0 with its tracks.
 struct Scene {
-  explicit Scene(std::int64_t obstacles) {
-    const MovingWorld world(world_of(static_cast<int>(obstacles)), 1);
+  explicit Scene(std::int64_t obstacles, bool boxes = false) {
+    MovingWorldShape shape = world_of(static_cast<int>(obstacles));
+    shape.boxes = boxes;
+    const MovingWorld world(shape, 1);
     tracks = world.tracks(0.0);
     request = world.request(settings);
     request.velocity = Vec3(request.vehicle.cruise_speed, 0.0, 0.0);
@@ -32,7 +34,7 @@ struct Scene {
 
 /// The share of one slave, with random variables of which most turn little.
 void path_evaluate(benchmark::State& state) {
-  const Scene scene(state.range(0));
+  const Scene scene(state.range(0), state.range(1) != 0);
   planner::horizon::PathProblem problem(scene.settings);
   problem.prepare(scene.request);
   std::vector<planner::optimizer::Cost> costs(
@@ -49,7 +51,14 @@ void path_evaluate(benchmark::State& state) {
                             benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
   state.counters["near"] = static_cast<double>(problem.obstacles());
 }
-BENCHMARK(path_evaluate)->Name("PathProblem::evaluate")->ArgName("obstacles")->Arg(0)->Arg(20)->Arg(200)->Arg(2000);
+BENCHMARK(path_evaluate)
+    ->Name("PathProblem::evaluate")
+    ->ArgNames({"obstacles", "boxes"})
+    ->Args({0, 0})
+    ->Args({20, 0})
+    ->Args({200, 0})
+    ->Args({2000, 0})
+    ->Args({20, 1});
 
 void path_prepare(benchmark::State& state) {
   const Scene scene(state.range(0));
