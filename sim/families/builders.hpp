@@ -57,6 +57,11 @@ class Mission {
 
 [[nodiscard]] Mission mission_of(const config::Scenario& scenario);
 
+/// Whether kStartClearance and kMapClearance hold and, where the straight flight is to be `blocked`, kStraightOverlap.
+[[nodiscard]] bool is_fair(const config::Scenario& scenario, bool blocked);
+/// Of a mission that is not limited otherwise, s.
+[[nodiscard]] double default_time_limit(const config::Scenario& scenario);
+
 /// An index from 0 to `more`, as an int.
 [[nodiscard]] int random_count(RandomStream& random, int least, int most);
 

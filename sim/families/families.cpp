@@ -247,6 +247,14 @@ bool ends_are_roomy(const config::Scenario& scenario) {
 
 }  // namespace
 
+bool is_fair(const config::Scenario& scenario, bool blocked) {
+  return starts_are_clear(scenario) && ends_are_roomy(scenario) && (!blocked || hits_straight(world::World(scenario)));
+}
+
+double default_time_limit(const config::Scenario& scenario) {
+  return 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
+}
+
 std::span<const std::string_view> world_families() {
   return kNames;
 }
@@ -278,10 +286,8 @@ config::Scenario make_world(std::string_view family, std::uint64_t seed) {
     scenario.name = std::string(family) + "-" + std::to_string(seed);
     scenario.vehicle_name = "ardrone2";
     known->build(scenario, random);
-    if (scenario.time_limit == 0.0)
-      scenario.time_limit = 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
-    if (!starts_are_clear(scenario) || !ends_are_roomy(scenario)) continue;
-    if (!known->blocked || hits_straight(world::World(scenario))) return scenario;
+    if (scenario.time_limit == 0.0) scenario.time_limit = default_time_limit(scenario);
+    if (is_fair(scenario, known->blocked)) return scenario;
   }
   throw std::logic_error("no world of the family " + std::string(family) + " for seed " + std::to_string(seed));
 }

@@ -23,6 +23,7 @@ QUICK = ["--set", "horizon.generations=4", "--set", "horizon.population=8", "--s
 PAIR = ["--families", "darts,gates", "--pilots", "jink,straight"]
 SMALL = [*PAIR, "--tiers", "field,perfect", "--runs", 1, *QUICK]
 FILES = ["flights.jsonl", "flights.csv", "table.csv", "table.json", "table.md", "arena.html", "planner.yaml"]
+SQUARE = pathlib.Path(__file__).resolve().parents[2] / "config/recordings/square.csv"
 BAD_USAGE = [
     (["--families", "crossing,bogus"], ["--families", "'bogus'", "crossing, head_on"]),
     (["--families", "crossing,crossing"], ["--families", "'crossing' is there twice"]),
@@ -37,6 +38,11 @@ BAD_USAGE = [
     (["--threads", "0"], ["--threads", "0"]),
     (["--set", "horizon.margn=1"], ["horizon.margn"]),
     (["--out", "/proc/no/such"], ["--out", "/proc/no/such"]),
+    (["--recorded", "no-such.csv"], ["no-such.csv", "cannot be read"]),
+    (["--recorded", str(SQUARE), "--families", "crossing"], ["--families", "--recorded"]),
+    (["--recorded", str(SQUARE), "--write", "crossing:1", "x.yaml"], ["--write", "'crossing'", "recorded"]),
+    (["--write", "recorded:1", "x.yaml"], ["--write", "'recorded'"]),
+    (["--merge", "a", "--recorded", str(SQUARE)], ["--merge", "--recorded"]),
     (["--merge", "no-such-folder"], ["no-such-folder", "cannot be read"]),
     (["--merge", "a", "--runs", "3"], ["--merge", "--runs"]),
     (["--merge", "a", "--seed", "3"], ["--merge", "--seed"]),
@@ -195,8 +201,31 @@ def written(arena):
     check(done.returncode in (0, 1) and not done.stderr, "jink plan reads it")
 
 
+def recorded(arena):
+    """Worlds out of a recording: flown, replayed, merged, and told from those of another recording."""
+    people = ["--recorded", SQUARE, "--tiers", "perfect", "--pilots", "straight", "--runs", 2]
+    said = arena.make("square", *people)
+    check("18 movers" in said, "says what it read")
+    lines, table = arena.result("square")
+    check(table["families"] == ["recorded"] and table["flights"] == 2 and "square.csv" in table["recorded"], table["recorded"])
+    outcomes = {failure["outcome"] for failure in table["failures"]}
+    check(outcomes == {"collision"}, f"straight flight hits people, in {len(table['failures'])} of 2 worlds")
+    for part in (1, 2):
+        arena.make(f"square{part}", *people, "--shard", f"{part}/2")
+    arena.make("squares", "--merge", "square1", "square2")
+    check(arena.result("squares") == (lines, table), "two shards merged are the whole")
+    other = arena.folder / "square.csv"
+    other.write_text(SQUARE.read_text() + "60.0,1,0.0,0.0,0.8,0.3,1.7\n")
+    refused(arena.run("--out", "square", "--resume", "--recorded", other, *people[2:]), ["recorded: square.csv", "in square", "in this call"])
+    other.write_text("t,id,x,y,z\n0,1,0,0,0\n0.4,1,east,0,0\n")
+    refused(arena.run("--out", "x", "--recorded", other), ["square.csv:3: x: 'east' is not a number"])
+    arena.run("--recorded", SQUARE, "--write", "recorded:7", "people.yaml")
+    scenario = yaml.safe_load((arena.folder / "people.yaml").read_text())
+    check(scenario["name"] == "recorded-7" and all("cylinder" in o for o in scenario["obstacles"]), "people.yaml: recorded-7")
+
+
 def test(program):
-    in_scratch(Flights, program, "arena", (bad_usage, files, replay, baselines, same_however, resumed, interrupted, written))
+    in_scratch(Flights, program, "arena", (bad_usage, files, replay, baselines, same_however, resumed, interrupted, written, recorded))
 
 
 main(test)

@@ -118,8 +118,10 @@ class Campaign {
   void fly_one(std::size_t task, const Job& job) {
     bool judge_now = false;
     try {
-      FlightRecord record = fly(job, scenario_of(job.world, job.tier), options_.settings, stop_);
-      if (!record.reached()) save_failure({options_.out, options_.settings, options_.logs}, job, record, stop_);
+      const config::Scenario scenario = scenario_of(job.world, job.tier, recording());
+      FlightRecord record = fly(job, scenario, options_.settings, stop_);
+      if (!record.reached())
+        save_failure({options_.out, options_.settings, options_.logs}, job, scenario, record, stop_);
       const std::scoped_lock lock(mutex_);
       file_.append(to_json(record));
       count(record);
@@ -139,11 +141,13 @@ class Campaign {
   void judge(std::size_t task) {
     if (stop_()) throw Cancelled();
     const World& world = tasks_[task].world;
-    const WorldRecord record{world.number, world.family, world.seed, judge_world(world)};
+    const WorldRecord record{world.number, world.family, world.seed, judge_world(world, recording())};
     const std::scoped_lock lock(mutex_);
     file_.append(to_json(record));
     results_.add(record);
   }
+
+  [[nodiscard]] const Recording* recording() const { return options_.recording.get(); }
 
   mutable std::mutex mutex_;  // guards results_, file_, progress_, next_, next_job_, open_, reached_
   Results& results_;

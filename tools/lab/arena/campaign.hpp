@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include "config/settings.hpp"
+#include "sim/recorded/recording.hpp"
 #include "tools/lab/arena/results.hpp"
 
 namespace jink::tools::lab::arena {
@@ -20,9 +22,10 @@ struct Progress {
 };
 
 struct CampaignOptions {
-  std::filesystem::path out;                         ///< exists
-  config::Settings settings;                         ///< what results.settings.parameters lists
-  int threads = 1;                                   ///< flights at once; each plans in its own thread
+  std::filesystem::path out;                                  ///< exists
+  config::Settings settings;                                  ///< what results.settings.parameters lists
+  std::shared_ptr<const sim::recorded::Recording> recording;  ///< that results.settings.recorded names, if it does
+  int threads = 1;                                            ///< flights at once; each plans in its own thread
   bool logs = true;                                  ///< whether a failed flight leaves its log, beside its scenario
   std::function<bool()> interrupted;                 ///< asked often, from any thread; required
   std::function<void(const Progress&)> on_progress;  ///< called from the caller's thread a few times a second; required

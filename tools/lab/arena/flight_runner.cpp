@@ -11,6 +11,7 @@
 
 #include "config/scenario_writer.hpp"
 #include "sim/families/families.hpp"
+#include "sim/families/recorded.hpp"
 #include "tools/cli/summaries.hpp"
 #include "tools/lab/arena/results.hpp"
 #include "tools/lab/arena/tiers.hpp"
@@ -107,10 +108,16 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+config::Scenario true_world(const World& world, const Recording* recording) {
+  if (recording != nullptr && world.family == sim::families::kRecorded)
+    return sim::families::make_recorded_world(*recording, world.seed);
+  return sim::families::make_world(world.family, world.seed);
+}
+
 }  // namespace
 
-config::Scenario scenario_of(const World& world, std::string_view tier) {
-  config::Scenario scenario = sim::families::make_world(world.family, world.seed);
+config::Scenario scenario_of(const World& world, std::string_view tier, const Recording* recording) {
+  config::Scenario scenario = true_world(world, recording);
   sim::families::set_tier(scenario, tier_of(tier), world.seed);
   return scenario;
 }
@@ -147,13 +154,14 @@ std::filesystem::path failure_folder(const std::filesystem::path& out, const std
   return out / "failed" / name;
 }
 
-void save_failure(const FailureOptions& failure, const Job& job, const FlightRecord& record, const Stop& stop) {
+void save_failure(const FailureOptions& failure, const Job& job, const config::Scenario& flown,
+                  const FlightRecord& record, const Stop& stop) {
   const std::filesystem::path folder = failure_folder(failure.out, job.name());
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw ResultsError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   const std::filesystem::path file = folder / "scenario.yaml";
-  campaign::write_atomically(file, config::to_yaml(scenario_of(job.world, job.tier)));
+  campaign::write_atomically(file, config::to_yaml(flown));
   if (!failure.log) return;
 
   const config::Scenario scenario = config::load_scenario(file);
@@ -184,8 +192,8 @@ std::string replay_command(const std::filesystem::path& out, const FlightRecord&
                      quoted((folder / "flight.html").string()));
 }
 
-Verdict judge_world(const World& world) {
-  switch (oracle::judge(sim::families::make_world(world.family, world.seed)).verdict) {
+Verdict judge_world(const World& world, const Recording* recording) {
+  switch (oracle::judge(true_world(world, recording)).verdict) {
     case oracle::Verdict::kSolvable:
       return Verdict::kSolvable;
     case oracle::Verdict::kImpossible:

@@ -24,6 +24,7 @@ std::vector<config::SettingText> listed(const CampaignSettings& s) {
           {"tiers", fmt::format("{}", fmt::join(s.tiers, ","))},
           {"runs", std::to_string(s.runs)},
           {"oracle", s.oracle ? "on" : "off"},
+          {"recorded", s.recorded.empty() ? "none" : s.recorded},
           {"shard", campaign::to_string(s.shard)}};
 }
 
@@ -60,10 +61,19 @@ std::vector<Job> jobs_of(const CampaignSettings& settings) {
 }
 
 Json to_header(const CampaignSettings& s) {
-  return {{"type", "header"},        {"format", kFormat},      {"version", s.version},
-          {"seed", s.seed},          {"families", s.families}, {"pilots", s.pilots},
-          {"tiers", s.tiers},        {"runs", s.runs},         {"oracle", s.oracle},
-          {"shard", s.shard.number}, {"shards", s.shard.of},   {"parameters", campaign::to_json(s.parameters)}};
+  return {{"type", "header"},
+          {"format", kFormat},
+          {"version", s.version},
+          {"seed", s.seed},
+          {"families", s.families},
+          {"pilots", s.pilots},
+          {"tiers", s.tiers},
+          {"runs", s.runs},
+          {"oracle", s.oracle},
+          {"recorded", s.recorded},
+          {"shard", s.shard.number},
+          {"shards", s.shard.of},
+          {"parameters", campaign::to_json(s.parameters)}};
 }
 
 CampaignSettings from_header(const Json& header) {
@@ -76,6 +86,7 @@ CampaignSettings from_header(const Json& header) {
     header.at("tiers").get_to(s.tiers);
     header.at("runs").get_to(s.runs);
     header.at("oracle").get_to(s.oracle);
+    header.at("recorded").get_to(s.recorded);
     header.at("shard").get_to(s.shard.number);
     header.at("shards").get_to(s.shard.of);
     s.parameters = campaign::parameters_of(header.at("parameters"));

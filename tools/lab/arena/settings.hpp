@@ -22,6 +22,7 @@ struct CampaignSettings {
   std::vector<std::string> families, pilots, tiers;
   int runs = 0;  ///< worlds of each family
   bool oracle = true;
+  std::string recorded;  ///< which recording the worlds come from, as "NAME (DIGEST)"; empty: from the families
   Shard shard;
   std::vector<config::SettingText> parameters;  ///< all of the planner's, as config::list_settings()
 };

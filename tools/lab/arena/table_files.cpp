@@ -321,6 +321,7 @@ Json summary_json(const Results& results, const Summary& summary, const std::fil
           {"pilots", s.pilots},
           {"tiers", s.tiers},
           {"oracle", s.oracle},
+          {"recorded", s.recorded},
           {"shard", fmt::format("{}/{}", s.shard.number, s.shard.of)},
           {"out", out.string()},
           {"flights", summary.flights},

@@ -12,6 +12,7 @@
 
 #include "config/scenario_writer.hpp"
 #include "sim/families/families.hpp"
+#include "sim/families/recorded.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/lab/arena/campaign.hpp"
 #include "tools/lab/arena/flight_runner.hpp"
@@ -36,7 +37,7 @@ constexpr const char* kArenaFooter =
 
 struct ArenaOptions {
   cli::CommonOptions common;
-  std::string families = "all", pilots = "jink", tiers = "field,perfect,realistic";
+  std::string families = "all", recorded, pilots = "jink", tiers = "field,perfect,realistic";
   int runs = 20;
   std::string out = "arena";
   bool resume = false;
@@ -65,11 +66,26 @@ std::vector<std::string> chosen(const char* option, const std::string& text, std
   return result;
 }
 
-arena::CampaignSettings settings_of(const ArenaOptions& options, const config::Settings& planner) {
+/// What --recorded names; nothing where it is not given.
+std::shared_ptr<const arena::Recording> recording_of(const ArenaOptions& options) {
+  if (options.recorded.empty()) return nullptr;
+  return std::make_shared<const arena::Recording>(sim::recorded::load_recording(options.recorded));
+}
+
+std::vector<std::string> families_of(const char* option, const std::string& text, const arena::Recording* recording) {
+  static constexpr std::array kRecordedAlone{sim::families::kRecorded};
+  if (recording != nullptr) return chosen(option, text, kRecordedAlone);
+  return chosen(option, text, sim::families::world_families());
+}
+
+arena::CampaignSettings settings_of(const ArenaOptions& options, const config::Settings& planner,
+                                    const arena::Recording* recording) {
   arena::CampaignSettings s;
   s.version = JINK_VERSION;
   s.seed = options.common.seed;
-  s.families = chosen("--families", options.families, sim::families::world_families());
+  s.families = families_of("--families", options.families, recording);
+  if (recording != nullptr)
+    s.recorded = fmt::format("{} ({:016x})", fs::path(options.recorded).filename().string(), recording->digest);
   s.pilots = chosen("--pilots", options.pilots, baselines::pilots());
   s.tiers = chosen("--tiers", options.tiers, arena::tiers());
   s.runs = options.runs;
@@ -107,9 +123,17 @@ void conclude(const arena::Results& results, const ArenaOptions& options, const 
   cli::write_json(options.common.json, arena::summary_json(results, summary, out));
 }
 
+std::string told(const arena::Recording& recording, const std::string& file) {
+  std::string text = fmt::format("{}: {} movers", file, recording.movers.size());
+  if (recording.without_place > 0) text += fmt::format(", {} rows without a place left out", recording.without_place);
+  if (recording.seen_once > 0) text += fmt::format(", {} seen once left out", recording.seen_once);
+  return text;
+}
+
 int run_campaign(const ArenaOptions& options, const cli::Printer& printer) {
   const config::Settings planner = options.common.settings();
-  const arena::CampaignSettings settings = settings_of(options, planner);
+  const std::shared_ptr<const arena::Recording> recording = recording_of(options);
+  const arena::CampaignSettings settings = settings_of(options, planner, recording.get());
   arena::Results results =
       campaign::resumed<arena::Results>(arena::results_path(options.out), settings, options.out, options.resume,
                                         printer, arena::read_results, [](const arena::Results& earlier) {
@@ -119,6 +143,7 @@ int run_campaign(const ArenaOptions& options, const cli::Printer& printer) {
   cli::require_json(options.common.json);
   arena::ResultsFile file(arena::results_path(options.out), results);
   campaign::write_atomically(fs::path(options.out) / "planner.yaml", campaign::parameters_yaml(settings.parameters));
+  if (recording != nullptr) printer.line(told(*recording, options.recorded));
   printer.line(fmt::format("seed {}: {} flights on {} threads, results in {}", settings.seed,
                            arena::jobs_of(settings).size(), options.common.thread_count(), options.out));
   cli::catch_signals();
@@ -126,6 +151,7 @@ int run_campaign(const ArenaOptions& options, const cli::Printer& printer) {
   arena::CampaignOptions campaign;
   campaign.out = options.out;
   campaign.settings = planner;
+  campaign.recording = recording;
   campaign.threads = options.common.thread_count();
   campaign.logs = options.logs == "on";
   campaign.interrupted = cli::interrupted;
@@ -174,12 +200,13 @@ int run_write(const ArenaOptions& options, const cli::Printer& printer) {
                         : campaign::whole<std::uint64_t>(std::string_view(world).substr(colon + 1));
   if (!seed)
     throw cli::UsageError(fmt::format("--write: '{}' is not FAMILY:SEED with a seed from 0 to 2^64 - 1", world));
-  const auto families = chosen("--write", world.substr(0, colon), sim::families::world_families());
+  const std::shared_ptr<const arena::Recording> recording = recording_of(options);
+  const auto families = families_of("--write", world.substr(0, colon), recording.get());
   const auto tiers = chosen("--tiers", options.tiers, arena::tiers());
   if (families.size() != 1) throw cli::UsageError("--write: takes one family");
   // Of all tiers the true world is the same; what is not asked for is not put in its sensing.
-  const config::Scenario scenario =
-      arena::scenario_of({0, families.front(), 0, *seed}, tiers.size() == 1 ? tiers.front() : "perfect");
+  const config::Scenario scenario = arena::scenario_of({0, families.front(), 0, *seed},
+                                                       tiers.size() == 1 ? tiers.front() : "perfect", recording.get());
   campaign::write_atomically(options.write.back(), config::to_yaml(scenario));
   printer.line(fmt::format("{}: {}", options.write.back(), scenario.name));
   return base::kExitReached;
@@ -191,9 +218,11 @@ void refuse_useless(const cli::Parser& app) {
                                    "--logs",     "--seed",   "--threads", "--config", "--set"};
   const char* const mode = app.count("--merge") > 0 ? "--merge" : "--write";
   const bool merges = mode == std::string_view("--merge");
-  for (const char* name : merges ? std::array{"--tiers", "--write"} : std::array{"--out", "--json"})
-    useless.emplace_back(name);
+  const std::vector<std::string> more = merges ? std::vector<std::string>{"--tiers", "--write", "--recorded"}
+                                               : std::vector<std::string>{"--out", "--json"};
+  useless.insert(useless.end(), more.begin(), more.end());
   campaign::refuse_beside(app, mode, useless);
+  campaign::refuse_beside(app, "--recorded", {"--families"});
 }
 
 int run(const ArenaOptions& options) {
@@ -218,6 +247,10 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
   app.add_option("--families", options->families,
                  "families of worlds, A,B or all: " + names(sim::families::world_families()))
       .show_default();
+  app.add_option("--recorded", options->recorded,
+                 "worlds out of a recording instead, of movers that did what they do in it: CSV of t, id, x, y, z\n"
+                 "(s, m), ADS-B as the OpenSky Network's CSV, or the pedestrian sets ETH and UCY as text")
+      .check(cli::some_name());
   app.add_option("--pilots", options->pilots, "who flies, A,B or all: " + names(baselines::pilots())).show_default();
   app.add_option("--tiers", options->tiers,
                  "how well obstacles and the vehicle itself are known, A,B or all: " + names(arena::tiers()))
