@@ -186,7 +186,7 @@ void Guide::look_for_way(const PathRequest& request, double now) {
   if (!way_.empty() && !is_open(way_, request)) way_.clear();  // what stands has changed since
 }
 
-// On a coarse grid, then on a fine one.
+// On a coarse grid, then on a fine one. There a place may be half a cell nearer than the middle of what can be passed.
 GridSearch::State Guide::advance(GridSearch& search, const PathRequest& request,
                                  std::span<const GridQuery::Column> closed) const {
   const base::VehicleLimits& vehicle = request.vehicle;
@@ -206,6 +206,7 @@ GridSearch::State Guide::advance(GridSearch& search, const PathRequest& request,
   GridSearch::State state = search.advance(standing_, places);
   if (state == GridSearch::State::kNone && search.query().cell == settings_.guide_cell) {
     query.cell *= kFineGrid;
+    query.least = std::max(0.0, settings_.guide_margin - 0.5 * query.cell);
     search.begin(query);
     state = search.advance(standing_, places);
   }
@@ -274,10 +275,30 @@ bool Guide::are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const {
   return true;
 }
 
+// Places of a fine grid that are nearer to something than a way may lead by, half a cell aside at most to where there
+// is most room.
+void Guide::centre(std::vector<Vec3>& way, double enough) const {
+  const double aside = 0.5 * kFineGrid * settings_.guide_cell;
+  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+    const Vec3 place = way[i];
+    double most = standing_.distance(place, enough);
+    if (most >= enough) continue;
+    for (int n = 0; n < 2 * kSides; ++n) {
+      const double angle = 2.0 * std::numbers::pi * n / kSides;
+      const Vec3 other = place + (n < kSides ? 0.5 : 1.0) * aside * Vec3(std::cos(angle), std::sin(angle), 0.0);
+      const double room = standing_.distance(other, enough);
+      if (room <= most) continue;
+      most = room;
+      way[i] = other;
+    }
+  }
+}
+
 // From each place to the farthest in sight that is no nearer to anything than the places between them are, past what is
 // closed.
-std::vector<Vec3> Guide::pulled_tight(const std::vector<Vec3>& way, const PathRequest& request,
+std::vector<Vec3> Guide::pulled_tight(std::vector<Vec3> way, const PathRequest& request,
                                       std::span<const GridQuery::Column> closed) const {
+  centre(way, request.vehicle.radius + settings_.guide_margin);
   const double wanted = request.vehicle.radius + first_clearance(request, settings_);
   std::vector<double> clearance;
   for (const Vec3& place : way) clearance.push_back(standing_.distance(place, wanted));

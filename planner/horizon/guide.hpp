@@ -73,7 +73,8 @@ class Guide {
   [[nodiscard]] std::optional<GridQuery::Column> gate_of(std::span<const Vec3> way, double enough) const;
   [[nodiscard]] bool are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const;
   void look_for_way(const PathRequest& request, double now);
-  [[nodiscard]] std::vector<Vec3> pulled_tight(const std::vector<Vec3>& way, const PathRequest& request,
+  void centre(std::vector<Vec3>& way, double enough) const;
+  [[nodiscard]] std::vector<Vec3> pulled_tight(std::vector<Vec3> way, const PathRequest& request,
                                                std::span<const GridQuery::Column> closed) const;
   [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
   bool pass(const Vec3& position);

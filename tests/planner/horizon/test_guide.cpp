@@ -152,6 +152,20 @@ TEST(Guide, LeadsOutOfADeadEndToPlacesInSight) {
   EXPECT_LT(flown, 36.0);
 }
 
+// As wide as what a map of cells leaves of a door of 1.3 m.
+TEST(Guide, FindsANarrowDoorWhereverItIsBesideTheGrid) {
+  const base::HorizonSettings settings;
+  for (const double aside : {0.0, 0.05, 0.1, 0.125, 0.15, 0.2}) {
+    const std::vector<base::Track> tracks = numbered(wall(10, 3.0 + aside, 0.9));
+    PathRequest request = guide_request(tracks);
+    Guide guide(settings, Guide::Knowledge::kWhole);
+    guide.lead(request, 0.0);
+    ASSERT_FALSE(guide.way().empty()) << aside;
+    for (std::size_t i = 1; i < guide.way().size(); ++i)
+      EXPECT_GT(clearance_of(tracks, guide.way()[i - 1], guide.way()[i]), settings.guide_margin - 0.06) << aside;
+  }
+}
+
 // Beside what stands; what moves beside the door keeps all of it.
 TEST(Guide, LetsTheMarginGiveWayInADoorWithSpeed) {
   std::vector<base::Track> tracks = numbered(wall(10, 0.0, 1.3));
