@@ -89,6 +89,28 @@ TEST(SeenWorlds, NothingIsFlownIntoThatIsOutOfView) {
   }
 }
 
+// It once looked at the target behind the wall, and not at the door in the other direction: so slow was it that it got
+// nowhere within the time it looked ahead, and therefore flew as slowly as one that sees nothing, in 7 of 10 plans.
+TEST(SeenWorlds, WhoFliesSlowlyLooksWhereHeFliesAllTheSame) {
+  struct Slow final : bridge::companion::FlightObserver {
+    int plans = 0, slow = 0;
+    void on_plan(double, const bridge::companion::PlanResult& result) override {
+      constexpr double kUnseeing = 0.3;  // m/s
+      ++plans;
+      slow += result.job.request.vehicle.cruise_speed <= kUnseeing ? 1 : 0;
+    }
+  } plans;
+  config::Scenario scenario = sim::families::make_world("office", 1457262407);
+  sim::families::set_tier(scenario, sim::families::Tier::kCamera);
+  scenario.obstacles.clear();
+  scenario.time_limit = 8.0;  // until it is in the door
+  sim::flight::ClosedLoopOptions options;
+  options.flight_observers = {&plans};
+  (void)sim::flight::fly_closed_loop(scenario, config::Settings(), options);
+  EXPECT_GT(plans.plans, 100);
+  EXPECT_LT(plans.slow, 0.64 * plans.plans);
+}
+
 // A hall whose walls and ceiling are in range: what is behind the door is seen from the door.
 TEST(SeenWorlds, WhoFliesOnlyWhereItWasSeenFindsTheDoorOfAHall) {
   const std::string hall = kWallWithADoor +
