@@ -184,8 +184,9 @@ class Reader {
 
   void read_words(const std::vector<std::string>& words) {
     constexpr std::size_t kFour = 4, kObsmat = 8;
-    if (words.size() != kFour && words.size() != kObsmat)
-      fail(line_, fmt::format("{} numbers: a header is missing, or there are 4 (frame, id, x, y) or 8 (ETH's obsmat)",
+    if (words.size() < kFour)
+      fail(line_, fmt::format("{} numbers: a header is missing, or there are 4 and more (frame, id, x, y), or 8 (ETH's "
+                              "obsmat)",
                               words.size()));
     if (!rows_.empty() && width_ != words.size())
       fail(line_, fmt::format("{} numbers where the line before had {}", words.size(), width_));
@@ -194,7 +195,7 @@ class Reader {
     const double frame = number(words[0], "frame", config::closed(0.0, kLatestTime));
     const double id = number(words[1], "id", config::closed(0.0, 1e9));
     const double x = number(words[2], "x", range);
-    const double y = number(words[width_ == kFour ? 3 : 4], "y", range);
+    const double y = number(words[width_ == kObsmat ? 4 : 3], "y", range);
     rows_.push_back({line_, frame, config::number_text(id), Vec3(x, y, 0.5 * kPersonHeight), kRadius, kPersonHeight});
   }
 

@@ -40,9 +40,9 @@ inline constexpr double kAircraftRadius = 6.0;  ///< half of a light aircraft's 
 ///   s), an address (`icao24`, `hex` or `id`), `lat` and `lon` (or `latitude`, `longitude`; degrees) and a height
 ///   (`geoaltitude`, `baroaltitude`, `altitude` or `alt`, m; the first of these that is there), and perhaps
 ///   `radius`: spheres. The origin is below the first place, at sea level. Rows without a place are left out.
-/// - The pedestrian sets ETH and UCY: no header, numbers between blanks; four in a line (frame, id, x, y), or the eight
-///   of ETH's obsmat (frame, id, x, z, y, and a velocity that is not read). People, cylinders on the ground; the frames
-///   that are annotated are 0.4 s apart, as in those sets.
+/// - The pedestrian sets ETH and UCY: no header, numbers between blanks; four in a line (frame, id, x, y) and more that
+///   are not read, or the eight of ETH's obsmat (frame, id, x, z, y, and a velocity that is not read). People,
+///   cylinders on the ground; the frames that are annotated are 0.4 s apart, as in those sets.
 /// Columns come in any order, others are not read; letters' case does not count. Empty lines and those that begin with
 /// # are left out.
 ///

@@ -90,6 +90,10 @@ TEST_F(RecordingFile, FramesOfPedestriansAreFourTenthsOfASecondApart) {
                                                           "790.0\t1.0\t9.57\t3.79\n"
                                                           "810.0\t1.0\t10.67\t3.99\n"),
                                               10),
+                                    {std::string("0\t1\t8.46\t3.59\t1.67\t0.17\n"
+                                                 "10\t1\t9.57\t3.79\t1.66\t0.32\n"
+                                                 "30\t1\t10.67\t3.99\t1.66\t0.32\n"),
+                                     10},
                                     {std::string("7.8e+02 1.0e+00 8.46e+00 0.0 3.59e+00 1.67 0.0 0.4\n"
                                                  "  7.86e+02 1.0e+00 9.57e+00 0.0 3.79e+00 1.67 0.0 0.4\n"
                                                  "7.98e+02 1.0e+00 1.067e+01 0.0 3.99e+00 1.67 0.0 0.4\n"),
@@ -131,7 +135,8 @@ TEST_F(RecordingFile, WhatIsWrongIsSaidWithItsLine) {
            {"t,id,x,y,z,radius\n0,1,0,0,0,0\n", ":2: radius: '0' is not in (0, 1000]"},
            {"time,icao24,lat,lon,alt\n0,a,91,0,0\n", ":2: lat: '91' is not in [-90, 90]"},
            {"time,icao24,lat,lon,alt\n0,a,0,0,0\n1,a,0,20,0\n", ":3: is more than 1000 km from the first place"},
-           {"0 1 2\n", ":1: 3 numbers: a header is missing, or there are 4 (frame, id, x, y) or 8 (ETH's obsmat)"},
+           {"0 1 2\n",
+            ":1: 3 numbers: a header is missing, or there are 4 and more (frame, id, x, y), or 8 (ETH's obsmat)"},
            {"0 1 2 3\n0 1 2 3 4 5 6 7\n", ":2: 8 numbers where the line before had 4"},
            {"0 1 2 3\n10 1 two 3\n", ":2: x: 'two' is not a number"}})
     EXPECT_EQ(refused(text), told) << text;
