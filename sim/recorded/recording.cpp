@@ -2,16 +2,12 @@
 #include "sim/recorded/recording.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <numeric>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -61,7 +57,7 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// Whether the columns hold something else, too, is not looked at.
+/// Where in a row of CSV each value stands.
 struct Columns {
   static constexpr std::size_t kNone = ~std::size_t{0};
   std::size_t t = kNone, id = kNone, x = kNone, y = kNone, z = kNone, radius = kNone, height = kNone;
@@ -100,7 +96,6 @@ class Reader {
       throw config::ConfigError(file_ + ": is larger than 256 MiB");
     std::ifstream in(file, std::ios::binary);
     std::ostringstream bytes;
-    errno = 0;
     if (!in.is_open() || std::filesystem::is_directory(file, none) || !(bytes << in.rdbuf()))
       throw config::ConfigError(file_ + ": is empty or cannot be read");
     text_ = bytes.str();
