@@ -250,6 +250,30 @@ void Planning::demand(const vehicle::VehicleState& state, double margin, planner
   request.acceleration_trust = settings_.horizon.acceleration_trust;
 }
 
+void Planning::retreat(double now, Intake& intake, const MotionControl& motion, PlanJob& job) {
+  planner::horizon::PathRequest& request = job.request;
+  std::vector<prediction::Prediction> predictions =
+      intake.table().predictions(job.start, settings_.horizon.acceleration_trust, request.position, Retreat::kRange);
+  planner::base::TimedPath flown = motion.stream().ahead(job.start);
+  const Vec3 beside = request.position - flown.front().position;
+  for (planner::base::TimedPoint& point : flown) {
+    point.t -= job.start;
+    point.position += beside;
+  }
+  std::vector<planner::base::Track> standing;
+  job.map.append_to(standing);
+  request.standing = standing;
+  const std::optional<Vec3> refuge = retreat_.choose(now, request, flown, std::move(predictions));
+  request.standing = {};
+  retreats_ = refuge.has_value();
+  reporter_.retreats(now, refuge, retreat_.risk());
+  if (!refuge) return;
+  request.target = *refuge;
+  request.visit = false;
+  request.stuck = false;
+  request.vehicle.cruise_speed = request.vehicle.max_speed;
+}
+
 PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, const Goal& goal) {
   const vehicle::VehicleState& state = intake.state();
   const setpoints::SetpointStream& stream = motion.stream();
@@ -290,11 +314,12 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   request.vehicle.max_acceleration *= share;
   request.vehicle.cruise_speed *= share;
   // Where something near moves in a way not understood yet, it is watched before it is passed.
-  const bool cautious = intake.table().has_unexplained(mission_.vehicle.cruise_speed);
+  const bool cautious = retreat_.cautious() || intake.table().has_unexplained(mission_.vehicle.cruise_speed);
   reporter_.cautious(now, cautious);
   if (cautious) request.vehicle.cruise_speed *= kCautious;
   keep_in_sight(state, motion.place_ahead(now, request.position).value_or(goal.target) - request.position, request);
   if (goal.kind == Goal::Kind::kWaypoint) keep_in_column(request);
+  if (goal.kind == Goal::Kind::kWaypoint && !from_vehicle) retreat(now, intake, motion, job);
   if (!from_vehicle) {
     job.previous = stream.plan(job.start);
     // A plan to another waypoint is no plan to keep; one to a place on the way there is.

@@ -13,6 +13,7 @@
 #include "bridge/companion/motion.hpp"
 #include "bridge/companion/planner_task.hpp"
 #include "bridge/companion/report.hpp"
+#include "bridge/companion/retreat.hpp"
 #include "bridge/companion/sight.hpp"
 #include "config/mission.hpp"
 #include "config/settings.hpp"
@@ -30,7 +31,8 @@ class Planning {
         planner_(planner),
         sight_(sight),
         reporter_(reporter),
-        contingency_(settings.horizon) {}
+        contingency_(settings.horizon),
+        retreat_(settings.horizon) {}
 
   /// The plan that has been finished, if any, as far as it is to be flown. `end`: where the flight is to end.
   std::optional<PlanResult> take(double now, const MotionControl& motion, const Vec3& end);
@@ -47,6 +49,8 @@ class Planning {
   /// Nothing that is known comes near where the vehicle stands or into its way up, should it take off now.
   [[nodiscard]] bool climbs_free(double now, Intake& intake) const;
 
+  /// The newest plan was asked to lead to a refuge instead of the goal.
+  [[nodiscard]] bool retreats() const { return retreats_; }
   /// When the newest plan with a path was begun. One made under a hazard counts: the planner is alive.
   [[nodiscard]] std::optional<double> newest_plan() const { return newest_plan_; }
   [[nodiscard]] std::uint64_t plans() const { return plans_; }
@@ -65,6 +69,8 @@ class Planning {
                                                                    const MotionControl::StopStart& start);
   void look_around(double now, Intake& intake, PlanJob& job) const;
   void look_at_map(const vehicle::VehicleState& state, PlanJob& job) const;
+  /// To where few can reach, where what is flown is likely to be hit.
+  void retreat(double now, Intake& intake, const MotionControl& motion, PlanJob& job);
   /// Where the vehicle sees by clouds alone what stands, no faster than it can stop within that; slow as long as it
   /// does not look to where it is to fly, `ahead`, m.
   void keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahead,
@@ -88,6 +94,7 @@ class Planning {
   const Sight& sight_;
   FlightReporter& reporter_;
   planner::horizon::Contingency contingency_;
+  Retreat retreat_;
   std::optional<double> last_begun_;
   Goal::Kind last_goal_ = Goal::Kind::kWaypoint;
   bool new_tracks_ = false;  // since then
@@ -98,6 +105,7 @@ class Planning {
   Vec3 planned_to_ = Vec3::Zero();   // and where its path ends, which may be on the way there
   std::uint64_t plans_ = 0;
   bool stays_at_end_ = false;
+  bool retreats_ = false;
   bool failed_ = false;
   std::optional<std::string> failure_;
 };

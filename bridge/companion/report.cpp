@@ -118,6 +118,15 @@ void FlightReporter::cautious(double now, bool cautious) {
     event(now, "caution", cautious ? "a new track nearby moves in a way not understood yet: slower" : "over");
 }
 
+void FlightReporter::retreats(double now, const std::optional<Vec3>& refuge, double risk) {
+  if (!changed(said_.retreats, refuge.has_value())) return;
+  std::array<char, 16> percent{};
+  std::snprintf(percent.data(), percent.size(), "%.1f %%", 100.0 * risk);
+  event(now, "retreat",
+        refuge ? "away from movers that are not understood yet: hit with " + std::string(percent.data()) + " on the way"
+               : "over");
+}
+
 void FlightReporter::stuck(double now, bool stuck) {
   if (changed(said_.stuck, stuck))
     event(now, "stuck", stuck ? "no nearer to the target for 4 s: looking for a way round" : "over");

@@ -95,6 +95,8 @@ class FlightReporter {
   // What lasts, each time that it is looked at.
   void reference_lost(double now, bool lost, double error, double share);
   void cautious(double now, bool cautious);
+  /// `risk`: probability to be hit on the way.
+  void retreats(double now, const std::optional<Vec3>& refuge, double risk);
   void stuck(double now, bool stuck);
   void unseen(double now, bool stays);
   void sending(double now, bool works);
@@ -115,8 +117,8 @@ class FlightReporter {
     supervisor::Phase phase = supervisor::Phase::kDone;
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
-    bool evades = false, reference_lost = false, cautious = false, stuck = false, unseen = false, arrived = false,
-         sending = true, margin = false;
+    bool evades = false, reference_lost = false, cautious = false, retreats = false, stuck = false, unseen = false,
+         arrived = false, sending = true, margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     map::CloudSourceStatus clouds;

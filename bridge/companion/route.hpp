@@ -34,6 +34,8 @@ class Route {
   }
   /// At the last waypoint, slow.
   [[nodiscard]] bool arrived(const Vec3& position, const Vec3& velocity) const;
+  /// It was led elsewhere: that it came no nearer says nothing.
+  void begin_anew() { progress_.begin_anew(); }
   /// Whether the vehicle has long come no nearer to where it goes. To be asked in each plan.
   bool stuck(double now, const Vec3& position);
 

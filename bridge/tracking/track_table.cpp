@@ -7,6 +7,7 @@
 
 #include "bridge/prediction/plain_prediction.hpp"
 #include "bridge/tracking/track_inbox.hpp"
+#include "planner/base/settings.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::tracking {
@@ -17,7 +18,8 @@ constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velo
 constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
 constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
 constexpr double kSelfLeaves = 1.5;  // times the distance that makes a track its own, at which it no longer is
-constexpr double kSelfSize = 3.0;    // times the vehicle's radius, that its own track may have
+constexpr double kTrust = planner::base::HorizonSettings{}.acceleration_trust;  // s, of what is held against the future
+constexpr double kSelfSize = 3.0;  // times the vehicle's radius, that its own track may have
 
 // The first of its id keeps it, later ones are numbered on from the largest.
 void make_ids_unique(std::vector<planner::base::Track>& tracks) {
@@ -148,20 +150,58 @@ void TrackTable::learn(const TrackMessage& message, double t) {
     const bool near = distance_squared < kLearned * kLearned;
     if (!near && entry.learned) {
       entry.learned.reset();
+      entry.error.reset();
       --learned_;
     }
     if (near && !entry.learned && learned_ < kMostLearned) {
       entry.learned = std::make_unique<prediction::MotionLearner>();
+      entry.error = std::make_unique<prediction::PredictionError>();
       ++learned_;
     }
     if (!entry.learned) continue;
     entry.learned->observe(t, measured, entry.track.value, measured.id, experience_);
+    entry.error->observe(t, measured, predict(entry, t, kTrust));
     if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
   }
   std::stable_sort(due.begin(), due.end(),
                    [](const Due& a, const Due& b) { return a.distance_squared < b.distance_squared; });
   if (due.size() > kFits) due.resize(kFits);
   for (const Due& d : due) d.entry->learned->fit(t, *d.measured, d.entry->track.value);
+}
+
+prediction::Prediction TrackTable::predict(const Entry& entry, double now, double trust) const {
+  prediction::Prediction result;
+  result.id = entry.track.value.id;
+  result.radius = entry.track.value.radius;
+  result.age = std::max(0.0, entry.track.age(now));
+  result.position_sigma = entry.track.value.position_sigma;
+  result.velocity_sigma = entry.track.value.velocity_sigma;
+  result.trust = trust;
+  if (auto forecast = entry.learned->forecast(now, entry.track.stamp, entry.track.value, experience_)) {
+    std::visit([&](auto& motion) { result.motion = std::move(motion); }, forecast->motion);
+    result.position_sigma = forecast->position_sigma;
+    result.velocity_sigma = forecast->velocity_sigma;
+  } else {
+    planner::base::Track track = prediction::predict(entry.track, now, trust);
+    track.body = {};
+    result.motion = std::move(track);
+  }
+  return result;
+}
+
+std::vector<prediction::Prediction> TrackTable::predictions(double now, double trust, const Vec3& place,
+                                                            double range) const {
+  std::vector<prediction::Prediction> all;
+  for (const auto& [key, entry] : entries_) {
+    if (entry.is_self || !entry.learned) continue;
+    prediction::Prediction one = predict(entry, now, trust);
+    if ((one.position(0.0) - place).norm() - one.radius > range) continue;
+    one.acceleration_sigma = entry.error->acceleration_sigma();
+    one.watched = entry.error->watched();
+    one.body = entry.track.value.body.later(one.age);
+    all.push_back(std::move(one));
+  }
+  return all;
 }
 
 bool TrackTable::has_unexplained(double speed) const {

@@ -14,6 +14,7 @@
 #include "bridge/prediction/learned_motion.hpp"
 #include "bridge/prediction/motion_learner.hpp"
 #include "bridge/prediction/position_history.hpp"
+#include "bridge/prediction/prediction_error.hpp"
 #include "bridge/tracking/clock_offset.hpp"
 #include "bridge/tracking/track_source.hpp"
 #include "planner/base/types.hpp"
@@ -60,6 +61,11 @@ class TrackTable {
   std::vector<planner::base::Track> predict(double now, double trust,
                                             std::vector<prediction::Forecast>* forecasts = nullptr);
 
+  /// The living tracks about the vehicle (kLearned) that come within `range`, m, of a place: where each will be, from
+  /// `now` on, to the best of what is known.
+  [[nodiscard]] std::vector<prediction::Prediction> predictions(double now, double trust, const Vec3& place,
+                                                                double range) const;
+
   /// Whether a track that the vehicle could meet within kMeeting at `speed` moves in a way that is not understood yet
   /// (MotionLearner::unexplained). As of the last messages.
   [[nodiscard]] bool has_unexplained(double speed) const;
@@ -93,6 +99,7 @@ class TrackTable {
     std::unique_ptr<prediction::ImmFilter> filter;  // of a track that is measured with noise
     prediction::PositionHistory history;            // of a track without a velocity
     std::unique_ptr<prediction::MotionLearner> learned;  // of a track that is near enough
+    std::unique_ptr<prediction::PredictionError> error;  // likewise
     std::optional<Vec3> near_from;  // where the vehicle was when the track came near; none: it is elsewhere
     bool is_self = false;
   };
@@ -116,6 +123,7 @@ class TrackTable {
   void ingest(const TrackMessage& message, double measured);
   static void take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured);
   void learn(const TrackMessage& message, double t);
+  [[nodiscard]] prediction::Prediction predict(const Entry& entry, double now, double trust) const;
   void forget(double now);
   [[nodiscard]] bool outlived(const Writer& writer, double received, double now) const;
 

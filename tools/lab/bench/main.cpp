@@ -58,8 +58,8 @@ void bench_parts() {
 int run(int argc, char** argv) {
   Options options;
   options.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const std::vector<std::string> all{"paper",    "quality", "tangent", "warm", "horizon",
-                                     "ablation", "worlds",  "scaling", "parts"};
+  const std::vector<std::string> all{"paper",    "quality", "tangent",    "warm",    "horizon",
+                                     "ablation", "worlds",  "prediction", "scaling", "parts"};
   std::vector<std::string> sections;
   CLI::App app(kAbout, "jink_bench");
   app.add_flag("--quick", options.quick, "Every table with few samples, in about a minute");
@@ -68,10 +68,12 @@ int run(int argc, char** argv) {
   auto* replans =
       app.add_option("--replans", options.replans, "Replans in each world, 10000 by default, 300 with --quick")
           ->check(CLI::Range(1, 1000000));
+  app.add_option("--recorded", options.recordings, "Recorded movers too, in section prediction: files as of jink arena")
+      ->check(CLI::ExistingFile);
   app.add_option("sections", sections,
                  "paper (time), quality (hypervolume, SLR), tangent (plans beside exact paths), warm (plans beside "
                  "larger budgets), horizon, ablation, "
-                 "worlds, scaling, parts; all by default")
+                 "worlds, prediction (stated regions beside where movers are), scaling, parts; all by default")
       ->check(CLI::IsMember(all));
   app.footer("Options that begin with --benchmark_ go to Google Benchmark: --benchmark_filter=REGEX.");
   app.allow_extras();
@@ -99,6 +101,7 @@ int run(int argc, char** argv) {
   if (wanted("horizon")) bench_horizon(options);
   if (wanted("ablation")) bench_ablation(options);
   if (wanted("worlds")) bench_worlds(options);
+  if (wanted("prediction")) bench_prediction(options);
   if (wanted("scaling")) bench_scaling(options);
   if (wanted("parts")) bench_parts();
   return 0;

@@ -21,6 +21,7 @@ struct Options {
   int rounds = 5;       ///< of all timed missions with each seed
   int replans = 10000;  ///< in each moving world
   int scaling_rounds = 50;
+  std::vector<std::string> recordings;  ///< files of recorded movers
 };
 
 /// Wall time of one call, ms.
@@ -57,13 +58,14 @@ void print_title(const std::string& title, const std::string& what);
 void print_note(const std::string& note);
 
 // The sections; each prints its tables.
-void bench_paper(const Options& options);     ///< time of paper missions, beside pagmo2
-void bench_quality(const Options& options);   ///< hypervolume and SLR, beside pagmo2
-void bench_tangent(const Options& options);   ///< open-loop plans beside exact shortest paths
-void bench_warm(const Options& options);      ///< plans of a flight beside larger budgets
-void bench_horizon(const Options& options);   ///< warm replanning in moving worlds
-void bench_ablation(const Options& options);  ///< what each part of the optimizer is worth
-void bench_worlds(const Options& options);    ///< plans and flights in the families of worlds
-void bench_scaling(const Options& options);   ///< threads and slaves
+void bench_paper(const Options& options);       ///< time of paper missions, beside pagmo2
+void bench_quality(const Options& options);     ///< hypervolume and SLR, beside pagmo2
+void bench_tangent(const Options& options);     ///< open-loop plans beside exact shortest paths
+void bench_warm(const Options& options);        ///< plans of a flight beside larger budgets
+void bench_horizon(const Options& options);     ///< warm replanning in moving worlds
+void bench_ablation(const Options& options);    ///< what each part of the optimizer is worth
+void bench_prediction(const Options& options);  ///< stated regions beside where movers are
+void bench_worlds(const Options& options);      ///< plans and flights in the families of worlds
+void bench_scaling(const Options& options);     ///< threads and slaves
 
 }  // namespace jink::tools::lab::bench

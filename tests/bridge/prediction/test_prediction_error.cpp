@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridge/prediction/prediction_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bridge/prediction/imm_filter.hpp"
+#include "planner/base/random.hpp"
+
+namespace jink::bridge::prediction {
+namespace {
+
+using planner::base::Track;
+
+constexpr double kSensed = 0.05;  // s
+
+/// One track, measured as in the arena's realistic tier or without noise, filtered and predicted as in flight.
+struct Judged {
+  explicit Judged(bool with_noise) : noisy(with_noise) {}
+
+  bool noisy;
+  PredictionError error;
+  ImmFilter filter;
+  planner::base::RandomStream random{3, 1};
+  double t = 0.0;
+
+  template <typename Motion>
+  void watch(Motion motion, double until) {
+    constexpr double kDifference = 1e-4;
+    for (; t <= until + 1e-9; t += kSensed) {
+      Track measured;
+      measured.position = motion(t);
+      measured.velocity = (motion(t + kDifference) - motion(t - kDifference)) / (2.0 * kDifference);
+      if (noisy) {
+        measured.position_sigma = 0.1;
+        measured.velocity_sigma = 0.3;
+        for (int axis = 0; axis < 3; ++axis) {
+          measured.position[axis] += 0.1 * random.normal();
+          measured.velocity[axis] += 0.3 * random.normal();
+        }
+      }
+      Track estimate = measured;
+      if (noisy) {
+        filter.update(kSensed, measured);
+        filter.apply(estimate);
+      }
+      Prediction predicted;
+      predicted.motion = estimate;
+      predicted.position_sigma = estimate.position_sigma;
+      predicted.velocity_sigma = estimate.velocity_sigma;
+      predicted.trust = 0.7;
+      error.observe(t, measured, predicted);
+    }
+  }
+};
+
+Vec3 straight(double t) {
+  return {2.0 * t, 1.0, -0.5 * t};
+}
+
+// [Contracts] trefoil of scale 1, slower 1.1.
+Vec3 knot(double t) {
+  const double s = t / 1.1;
+  return {std::sin(s) + 2.0 * std::sin(2.0 * s), std::cos(s) - 2.0 * std::cos(2.0 * s), -std::sin(3.0 * s)};
+}
+
+TEST(PredictionError, ANewTrackMayStopOrTurn) {
+  Judged judged(/*with_noise=*/true);
+  judged.watch(straight, 0.0);
+  EXPECT_GT(judged.error.acceleration_sigma(), 2.0);
+  EXPECT_LT(judged.error.acceleration_sigma(), 5.0);
+}
+
+TEST(PredictionError, WhoFliesStraightProvesIt) {
+  Judged judged(/*with_noise=*/true);
+  judged.watch(straight, 1.5);
+  EXPECT_LT(judged.error.acceleration_sigma(), 0.8);
+}
+
+TEST(PredictionError, WhoTurnsIsFoundOut) {
+  Judged judged(/*with_noise=*/true);
+  judged.watch(knot, 1.0);
+  EXPECT_GT(judged.error.acceleration_sigma(), 3.0);
+  judged.watch([](double t) { return Vec3(knot(1.0) + (t - 1.0) * Vec3(1.0, 0.0, 0.0)); }, 6.0);
+  EXPECT_LT(judged.error.acceleration_sigma(), 1.0) << "and forgiven";
+}
+
+TEST(PredictionError, WithoutNoiseNothingIsAssumed) {
+  Judged judged(/*with_noise=*/false);
+  judged.watch(straight, 1.0);
+  EXPECT_LT(judged.error.acceleration_sigma(), 1e-6);
+}
+
+// It is believed for what it foresaw itself, and not before.
+TEST(PredictionError, ALearnedSwingIsDoubtedUntilItHasShownThatItIsBetter) {
+  Judged judged(/*with_noise=*/true);
+  judged.watch(knot, 1.0);
+  const double before = judged.error.acceleration_sigma();
+  Prediction learned;
+  learned.motion = HarmonicMotion{};  // stays at the origin
+  Track measured;
+  measured.position_sigma = 0.1;
+  judged.error.observe(1.05, measured, learned);
+  EXPECT_NEAR(judged.error.acceleration_sigma(), before, 0.1);
+  for (double t = 1.1; t < 2.0; t += kSensed) judged.error.observe(t, measured, learned);
+  EXPECT_LT(judged.error.acceleration_sigma(), 0.3 * before);
+}
+
+TEST(Prediction, IsLessSureTheFartherAhead) {
+  Prediction prediction;
+  prediction.position_sigma = 0.1;
+  prediction.velocity_sigma = 0.2;
+  prediction.acceleration_sigma = 2.0;
+  EXPECT_DOUBLE_EQ(prediction.sigma(0.0), 0.1);
+  EXPECT_DOUBLE_EQ(prediction.sigma(1.0), std::sqrt(0.01 + 0.04 + 1.0));
+  prediction.age = 1.0;
+  EXPECT_DOUBLE_EQ(prediction.sigma(0.0), std::sqrt(0.01 + 0.04 + 1.0));
+}
+
+}  // namespace
+}  // namespace jink::bridge::prediction
