@@ -271,7 +271,8 @@ void Planning::retreat(double now, Intake& intake, const MotionControl& motion, 
   request.target = *refuge;
   request.visit = false;
   request.stuck = false;
-  request.vehicle.cruise_speed = request.vehicle.max_speed;
+  // Who sees ahead alone does not hurry to where he does not look.
+  if (!mission_.cloud) request.vehicle.cruise_speed = motion.share(now) * request.vehicle.max_speed;
 }
 
 PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, const Goal& goal) {

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "planner/horizon/guided_planner.hpp"
 #include "planner/horizon/horizon_planner.hpp"
+#include "planner/horizon/reach.hpp"
 #include "tools/lab/bench/measure.hpp"
 #include "tools/lab/bench/moving_world.hpp"
 
@@ -27,17 +29,28 @@ class Flight {
       : shape(world_shape),
         world_(shape, kSeed),
         planner_(planner::base::HorizonSettings{}),
+        guided_(planner_, planner::horizon::Guide::Knowledge::kSensed),
         request_(world_.request(planner_.settings())) {
     other_target_ = request_.position;
   }
 
   void replan(planner::base::WorkerPool& pool) {
     const std::vector<planner::base::Track> tracks = world_.tracks(t_);
-    request_.tracks = tracks;
+    std::vector<planner::base::Track> standing;
+    planner::horizon::PathRequest request = request_;
+    request.tracks = tracks;
     if (world_.contact(request_.position, t_)) ++contacts;
     planner::verify::Plan plan;
     const planner::base::Budget budget{planner_.settings().generations};
-    ms.push_back(milliseconds([&] { plan = planner_.plan(request_, previous_, kSeed, number_, budget, pool); }));
+    ms.push_back(milliseconds([&] {
+      if (shape.standing == 0) {
+        plan = planner_.plan(request, previous_, kSeed, number_, budget, pool);
+        return;
+      }
+      world_.map().near(planner::horizon::reach_of(request, planner_.settings()), 0.0, standing);
+      request.standing = standing;
+      plan = guided_.plan(request, t_, {&world_.map()}, previous_, kSeed, number_, budget, pool);
+    }));
     if (plan.path.empty()) throw std::logic_error("a request of the benchmark was refused");
     if (plan.verification.free()) ++free;
     if (plan.status == planner::verify::PlanStatus::kBlocked) ++blocked;
@@ -66,6 +79,7 @@ class Flight {
 
   MovingWorld world_;
   planner::horizon::HorizonPlanner planner_;
+  planner::horizon::GuidedPlanner guided_;
   planner::horizon::PathRequest request_;
   Vec3 other_target_;
   planner::base::TimedPath previous_;
@@ -81,7 +95,8 @@ void print(const std::vector<std::unique_ptr<Flight>>& flights) {
     const Flight& f = *flight;
     const double p50 = median(f.ms);
     const double p99 = quantile(f.ms, 0.99);
-    table.row({fmt::format("{}{}", f.shape.obstacles, f.shape.boxes ? " boxes" : ""),
+    table.row({fmt::format("{}{}{}", f.shape.obstacles, f.shape.boxes ? " boxes" : "",
+                           f.shape.standing > 0 ? fmt::format(", {} stand", f.shape.standing) : ""),
                fmt::format("{:.0f} x {:.0f} x {:.0f}", f.shape.size.x(), f.shape.size.y(), f.shape.size.z()),
                fmt::format("{:.0f}", f.shape.mission), fmt::format("{}", f.ms.size()), fmt::format("{:.2f}", p50),
                fmt::format("{:.2f}", p99), fmt::format("{:.2f}", quantile(f.ms, 1.0)),
@@ -109,6 +124,8 @@ void bench_horizon(const Options& options) {
   MovingWorldShape boxes = world_of(20);
   boxes.boxes = true;
   flights.push_back(std::make_unique<Flight>(boxes));
+  const MovingWorldShape mapped{2000, {400.0, 200.0, 12.0}, 36.0, false, 10000};
+  flights.push_back(std::make_unique<Flight>(mapped));
   MovingWorldShape far = world_of(2000);
   far.mission = kFarShare * far.size.x();
   flights.push_back(std::make_unique<Flight>(far));

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/lab/bench/moving_world.hpp"
 
+#include <algorithm>
 #include <numbers>
+#include <utility>
+#include <variant>
 
 #include "planner/base/random.hpp"
 #include "sim/world/shapes.hpp"
@@ -14,6 +17,8 @@ constexpr double kLargestRadius = 0.6;
 constexpr double kLargestSpeed = 3.0;  // m/s
 constexpr double kLeastEdge = 0.5;     // m
 constexpr double kLargestEdge = 4.0;   // m
+constexpr double kLeastStanding = 0.4;    // m
+constexpr double kLargestStanding = 1.2;  // m
 constexpr double kFastestTurn = 0.5;   // rad/s
 constexpr double kStartClearance = 3.0;
 
@@ -54,6 +59,13 @@ config::Scenario scenario_of(const MovingWorldShape& shape, std::uint64_t seed) 
     if ((motion.position - scenario.start).norm() < kStartClearance) continue;
     obstacle.motion = motion;
     scenario.obstacles.push_back(obstacle);
+  }
+  while (scenario.map.size() < static_cast<std::size_t>(shape.standing)) {
+    config::Obstacle box{config::BoxShape{uniform(Vec3::Constant(kLeastStanding), Vec3::Constant(kLargestStanding), random)},
+                         config::LinearMotion{uniform(scenario.world->min, scenario.world->max, random)}};
+    const Vec3& place = std::get<config::LinearMotion>(box.motion).position;
+    if (std::min((place - scenario.start).norm(), (place - scenario.target).norm()) < kStartClearance) continue;
+    scenario.map.push_back(std::move(box));
   }
   return scenario;
 }

@@ -7,6 +7,7 @@
 
 #include "planner/base/settings.hpp"
 #include "planner/base/types.hpp"
+#include "planner/geometry/static_map.hpp"
 #include "planner/horizon/path_problem.hpp"
 #include "sim/world/world.hpp"
 
@@ -17,6 +18,7 @@ struct MovingWorldShape {
   Vec3 size{40.0, 20.0, 8.0};  ///< of the volume, m
   double mission = 36.0;       ///< between the targets, along x through the middle, m
   bool boxes = false;          ///< of 0.5 to 4 m, which turn, in place of the spheres
+  int standing = 0;            ///< boxes of 0.4 to 1.2 m at rest, which a map knows, none within 3 m of the targets
 };
 
 /// The worlds of the benchmarks. The mission is the same in all, so that the obstacles are what differs.
@@ -34,6 +36,8 @@ class MovingWorld {
 
   /// Exact positions and velocities at a time. What comes of them is constant velocity: bounces are not foreseen.
   [[nodiscard]] std::vector<planner::base::Track> tracks(double t) const;
+  /// What stands.
+  [[nodiscard]] const planner::geometry::StaticMap& map() const { return *world_.map(); }
   /// A request from rest at the first target to the second, at time 0, filled as the companion does; without tracks.
   [[nodiscard]] planner::horizon::PathRequest request(const planner::base::HorizonSettings& settings) const;
   /// Whether the vehicle at `position` overlaps an obstacle.
