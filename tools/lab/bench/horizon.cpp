@@ -2,6 +2,7 @@
 // Replanning as in flight, from the state that the last plan prescribes, ten times a second, in moving worlds.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -34,14 +35,18 @@ class Flight {
     other_target_ = request_.position;
   }
 
-  void replan(planner::base::WorkerPool& pool) {
+  /// `deadline_ms`: of the plan; 0: none.
+  void replan(double deadline_ms, planner::base::WorkerPool& pool) {
     const std::vector<planner::base::Track> tracks = world_.tracks(t_);
     std::vector<planner::base::Track> standing;
     planner::horizon::PathRequest request = request_;
     request.tracks = tracks;
     if (world_.contact(request_.position, t_)) ++contacts;
     planner::verify::Plan plan;
-    const planner::base::Budget budget{planner_.settings().generations};
+    planner::base::Budget budget{planner_.settings().generations};
+    if (deadline_ms > 0.0)
+      budget.deadline = std::chrono::steady_clock::now() + std::chrono::round<std::chrono::nanoseconds>(
+                                                               std::chrono::duration<double, std::milli>(deadline_ms));
     ms.push_back(milliseconds([&] {
       if (shape.standing == 0) {
         plan = planner_.plan(request, previous_, kSeed, number_, budget, pool);
@@ -114,10 +119,12 @@ void bench_horizon(const Options& options) {
   print_title(
       "horizon mode: warm replanning",
       fmt::format(
-          "K {}, horizon {} s, n_pop {}, {} generations, m {}, l {}, no deadline, {} threads; a plan every {} s, the "
+          "K {}, horizon {} s, n_pop {}, {} generations, m {}, l {}, {}, {} threads; a plan every {} s, the "
           "worlds in turn (the last, with far targets, in every {}th round).\nTracks are exact; bounces are not "
           "foreseen, so an obstacle can turn into the vehicle.",
-          s.waypoints, s.time, s.population, s.generations, s.slaves, s.sharing, options.cores, kPeriod, kFarEvery));
+          s.waypoints, s.time, s.population, s.generations, s.slaves, s.sharing,
+          options.deadline_ms > 0.0 ? fmt::format("a deadline of {} ms", options.deadline_ms) : "no deadline",
+          options.cores, kPeriod, kFarEvery));
   planner::base::WorkerPool pool(options.cores);
   std::vector<std::unique_ptr<Flight>> flights;
   for (const int obstacles : {20, 200, 2000}) flights.push_back(std::make_unique<Flight>(world_of(obstacles)));
@@ -131,7 +138,7 @@ void bench_horizon(const Options& options) {
   flights.push_back(std::make_unique<Flight>(far));
   for (int i = 0; i < options.replans; ++i) {
     for (const auto& flight : flights) {
-      if (flight != flights.back() || i % kFarEvery == 0) flight->replan(pool);
+      if (flight != flights.back() || i % kFarEvery == 0) flight->replan(options.deadline_ms, pool);
     }
   }
   print(flights);

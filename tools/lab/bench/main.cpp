@@ -68,6 +68,8 @@ int run(int argc, char** argv) {
   auto* replans =
       app.add_option("--replans", options.replans, "Replans in each world, 10000 by default, 300 with --quick")
           ->check(CLI::Range(1, 1000000));
+  app.add_option("--deadline", options.deadline_ms, "ms, of each replan in section horizon; without it there is none")
+      ->check(CLI::Range(0.1, 60000.0));
   app.add_option("--recorded", options.recordings, "Recorded movers too, in section prediction: files as of jink arena")
       ->check(CLI::ExistingFile);
   app.add_option("sections", sections,

@@ -17,9 +17,10 @@ inline constexpr std::uint64_t kSeed = 1;  ///< of what has one
 struct Options {
   bool quick = false;
   int cores = 1;
-  int seeds = 20;       ///< missions of each kind, with seeds 1 .. seeds
-  int rounds = 5;       ///< of all timed missions with each seed
-  int replans = 10000;  ///< in each moving world
+  int seeds = 20;            ///< missions of each kind, with seeds 1 .. seeds
+  int rounds = 5;            ///< of all timed missions with each seed
+  int replans = 10000;       ///< in each moving world
+  double deadline_ms = 0.0;  ///< of these; 0: none
   int scaling_rounds = 50;
   std::vector<std::string> recordings;  ///< files of recorded movers
 };

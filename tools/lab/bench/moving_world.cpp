@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kLeastRadius = 0.3;  // m
 constexpr double kLargestRadius = 0.6;
-constexpr double kLargestSpeed = 3.0;  // m/s
-constexpr double kLeastEdge = 0.5;     // m
-constexpr double kLargestEdge = 4.0;   // m
+constexpr double kLargestSpeed = 3.0;     // m/s
+constexpr double kLeastEdge = 0.5;        // m
+constexpr double kLargestEdge = 4.0;      // m
 constexpr double kLeastStanding = 0.4;    // m
 constexpr double kLargestStanding = 1.2;  // m
-constexpr double kFastestTurn = 0.5;   // rad/s
+constexpr double kFastestTurn = 0.5;      // rad/s
 constexpr double kStartClearance = 3.0;
 
 Vec3 uniform(const Vec3& min, const Vec3& max, planner::base::RandomStream& random) {
@@ -61,8 +61,9 @@ config::Scenario scenario_of(const MovingWorldShape& shape, std::uint64_t seed) 
     scenario.obstacles.push_back(obstacle);
   }
   while (scenario.map.size() < static_cast<std::size_t>(shape.standing)) {
-    config::Obstacle box{config::BoxShape{uniform(Vec3::Constant(kLeastStanding), Vec3::Constant(kLargestStanding), random)},
-                         config::LinearMotion{uniform(scenario.world->min, scenario.world->max, random)}};
+    config::Obstacle box{
+        config::BoxShape{uniform(Vec3::Constant(kLeastStanding), Vec3::Constant(kLargestStanding), random)},
+        config::LinearMotion{uniform(scenario.world->min, scenario.world->max, random)}};
     const Vec3& place = std::get<config::LinearMotion>(box.motion).position;
     if (std::min((place - scenario.start).norm(), (place - scenario.target).norm()) < kStartClearance) continue;
     scenario.map.push_back(std::move(box));
