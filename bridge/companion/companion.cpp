@@ -105,6 +105,7 @@ void Companion::take_state(double now) {
   if (change.rebooted && supervisor_.phase() != supervisor::Phase::kWaiting) supervisor_.began_anew(now);
   if (!supervisor_.flight_began() || !change.shift) return;
   motion_.shift(*change.shift);
+  planning_.shift(*change.shift);
   place_mission();
   reporter_.estimate_reset(now, *change.shift);
 }

@@ -43,6 +43,8 @@ class Planning {
   /// Starts a plan. Precondition: due().
   void start(double now, Intake& intake, const MotionControl& motion, const Goal& goal);
   void tracks_came() { new_tracks_ = true; }
+  /// The autopilot's estimate jumped by that.
+  void shift(const Vec3& by) { retreat_.shift(by); }
   /// The reference to stop along, by what is known now, without the planner.
   [[nodiscard]] planner::base::TimedPath stop(double now, Intake& intake, const MotionControl& motion,
                                               const MotionControl::StopStart& start);

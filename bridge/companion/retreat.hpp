@@ -33,6 +33,10 @@ class Retreat {
   /// valid at time 0 too. O(places · (predictions + steps)) where a refuge is looked for, O(predictions) else.
   std::optional<Vec3> choose(double now, const planner::horizon::PathRequest& request,
                              const planner::base::TimedPath& flown, std::vector<prediction::Prediction> predictions);
+  /// The autopilot's estimate jumped by that: a refuge is where it was.
+  void shift(const Vec3& by) {
+    if (refuge_) *refuge_ += by;
+  }
   /// Probability to be hit on what is flown, or on the way on from a refuge, as of the last call.
   [[nodiscard]] double risk() const { return std::max(risk_, entry_risk_); }
   /// Something that may do what is not foreseen might soon be met, as of the last call.

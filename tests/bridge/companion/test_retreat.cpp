@@ -79,6 +79,18 @@ TEST(Retreat, HoldsOnToItsRefuge) {
   EXPECT_EQ(hovers.choose({mover({1.5, -0.1, 0.1}, 5.0)}), first);
 }
 
+TEST(Retreat, TakesItsRefugeAlongWhenTheEstimateJumps) {
+  Hovers hovers;
+  (void)hovers.choose({});
+  const std::optional<Vec3> first = hovers.choose_for(2 * kPeriod, {mover({1.5, 0.0, 0.0}, 5.0)});
+  ASSERT_TRUE(first);
+  const Vec3 jump(0.5, -2.0, 0.3);
+  hovers.retreat.shift(jump);
+  hovers.request.position += jump;
+  hovers.flown.front().position += jump;
+  EXPECT_EQ(hovers.choose({mover(Vec3(1.5, 0.0, 0.0) + jump, 5.0)}), Vec3(*first + jump));
+}
+
 TEST(Retreat, GoesOnOnceTheWayIsCalm) {
   Hovers hovers;
   (void)hovers.choose({});
