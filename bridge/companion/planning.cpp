@@ -265,7 +265,6 @@ void Planning::retreat(double now, Intake& intake, const MotionControl& motion, 
   request.standing = standing;
   const std::optional<Vec3> refuge = retreat_.choose(now, request, flown, std::move(predictions));
   request.standing = {};
-  retreats_ = refuge.has_value();
   reporter_.retreats(now, refuge, retreat_.risk());
   if (!refuge) return;
   request.target = *refuge;

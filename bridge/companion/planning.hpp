@@ -52,7 +52,7 @@ class Planning {
   [[nodiscard]] bool climbs_free(double now, Intake& intake) const;
 
   /// The newest plan was asked to lead to a refuge instead of the goal.
-  [[nodiscard]] bool retreats() const { return retreats_; }
+  [[nodiscard]] bool retreats() const { return retreat_.refuge().has_value(); }
   /// When the newest plan with a path was begun. One made under a hazard counts: the planner is alive.
   [[nodiscard]] std::optional<double> newest_plan() const { return newest_plan_; }
   [[nodiscard]] std::uint64_t plans() const { return plans_; }
@@ -107,7 +107,6 @@ class Planning {
   Vec3 planned_to_ = Vec3::Zero();   // and where its path ends, which may be on the way there
   std::uint64_t plans_ = 0;
   bool stays_at_end_ = false;
-  bool retreats_ = false;
   bool failed_ = false;
   std::optional<std::string> failure_;
 };

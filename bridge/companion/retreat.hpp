@@ -33,6 +33,8 @@ class Retreat {
   /// valid at time 0 too. O(places · (predictions + steps)) where a refuge is looked for, O(predictions) else.
   std::optional<Vec3> choose(double now, const planner::horizon::PathRequest& request,
                              const planner::base::TimedPath& flown, std::vector<prediction::Prediction> predictions);
+  /// What the last call gave.
+  [[nodiscard]] const std::optional<Vec3>& refuge() const { return refuge_; }
   /// The autopilot's estimate jumped by that: a refuge is where it was.
   void shift(const Vec3& by) {
     if (refuge_) *refuge_ += by;

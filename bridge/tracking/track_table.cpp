@@ -18,8 +18,8 @@ constexpr double kSelfSpeed = 1.5;   // m/s, of difference to the vehicle's velo
 constexpr double kSelfSigmas = 2.0;  // of a track's position, that it may be off the vehicle's
 constexpr double kSelfDoubt = 0.5;   // m, of that at most: who is not seen better than so may be somebody else
 constexpr double kSelfLeaves = 1.5;  // times the distance that makes a track its own, at which it no longer is
+constexpr double kSelfSize = 3.0;    // times the vehicle's radius, that its own track may have
 constexpr double kTrust = planner::base::HorizonSettings{}.acceleration_trust;  // s, of what is held against the future
-constexpr double kSelfSize = 3.0;  // times the vehicle's radius, that its own track may have
 
 // The first of its id keeps it, later ones are numbered on from the largest.
 void make_ids_unique(std::vector<planner::base::Track>& tracks) {
