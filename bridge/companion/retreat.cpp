@@ -53,7 +53,7 @@ planner::base::TimedPath Retreat::motion_to(const planner::horizon::PathRequest&
   alone.standing = {};
   alone.target = target;
   problem_.prepare(alone);
-  return problem_.motion(std::vector<double>(static_cast<std::size_t>(problem_.dimension()), 0.0));
+  return problem_.unobstructed_motion();
 }
 
 void Retreat::look_for_refuge(const planner::horizon::PathRequest& request, double least,

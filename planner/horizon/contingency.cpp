@@ -52,12 +52,11 @@ Stop Contingency::choose(const PathRequest& request, std::span<const base::Timed
   for (const base::TimedPath& stop : stops) {
     if (consider(stop)) return best;
   }
-  const std::vector<double> unobstructed(static_cast<std::size_t>(problem_.dimension()), 0.0);
   for (const double away : kAway) {
     for (const Vec3& direction : directions()) {
       evasion.target = stops.front().back().position + away * direction;
       problem_.prepare(evasion);
-      base::TimedPath path = problem_.motion(unobstructed);
+      base::TimedPath path = problem_.unobstructed_motion();
       if (allowed && !allowed(path)) continue;
       if (consider(std::move(path))) return best;
     }

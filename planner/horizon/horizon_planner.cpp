@@ -26,10 +26,6 @@ base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSett
   return o;
 }
 
-base::TimedPath unobstructed(const PathProblem& problem) {
-  return problem.motion(std::vector<double>(static_cast<std::size_t>(problem.dimension()), 0.0));
-}
-
 /// What a verified horizon and the whole path's check amount to.
 void conclude(const PathRequest& request, const PathProblem& problem, verify::Plan& plan) {
   plan.horizon = problem.horizon();
@@ -75,7 +71,7 @@ std::vector<double> initial_solutions(const PathProblem& problem, const PathRequ
                                       const base::TimedPath& previous, const base::HorizonSettings& settings) {
   const auto d = static_cast<std::size_t>(problem.dimension());
   std::vector<double> initial(d, 0.0);
-  const base::TimedPath straight = unobstructed(problem);
+  const base::TimedPath straight = problem.unobstructed_motion();
   const auto add = [&](const base::TimedPath& path) {
     initial.resize(initial.size() + d);
     problem.encode_path(path, {initial.data() + initial.size() - d, d});
@@ -118,7 +114,7 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
   PathProblem& usual = problems(Extent::kUsual).usual;
   usual.prepare(request);
   if (std::optional<verify::Plan> settled = without_search(usual, request, previous)) return *std::move(settled);
-  const base::TimedPath straight = unobstructed(usual);
+  const base::TimedPath straight = usual.unobstructed_motion();
   Problems& look = problems(extent_of(request, straight, settings_));
   // Where straight on does not get there and waiting has not helped, the way on is measured over the nearest opening:
   // else to wait for a wall to go away is for ever cheaper than to fly to its hole.
@@ -150,7 +146,7 @@ verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedP
 std::optional<verify::Plan> HorizonPlanner::without_search(const PathProblem& problem, const PathRequest& request,
                                                            const base::TimedPath& previous) const {
   verify::Plan plan;
-  plan.path = unobstructed(problem);
+  plan.path = problem.unobstructed_motion();
   const optimizer::Cost ideal = problem.cost_of(plan.path);
   const auto settle = [&](verify::Plan& settled) {
     settled.verification = verify_until(settled.path, request, problem.horizon());

@@ -79,6 +79,10 @@ class PathProblem final : public optimizer::Problem {
   /// settings().arrival (0.05 m) of the target to stay, within the horizon, does this one end: in the two seconds
   /// before, it leaves it by at most that, and rests on the target then or a few steps later.
   [[nodiscard]] base::TimedPath motion(std::span<const double> x) const;
+  /// The motion of unobstructed flight: all variables 0. Allocates.
+  [[nodiscard]] base::TimedPath unobstructed_motion() const {
+    return motion(std::vector<double>(static_cast<std::size_t>(dimension()), 0.0));
+  }
   /// Objectives and violation of any path that starts at time 0, measured like those of a solution. It may be where no
   /// solution can be. O(tracks + near tracks · steps), allocates.
   [[nodiscard]] optimizer::Cost cost_of(const base::TimedPath& path) const;
