@@ -7,14 +7,8 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kWeight = 1.2;     // of the estimate of what is left: a way may be longer by that, and is found sooner
-constexpr double kNarrow = 10.0;    // times its length, that a way costs more where only the least is kept
-constexpr int kFarthest = 1 << 19;  // cells from the target, either way
-
-std::uint64_t key(const Eigen::Vector3i& place) {
-  const auto part = [](int x) { return static_cast<std::uint64_t>(x + kFarthest); };
-  return (part(place.x()) << 42U) | (part(place.y()) << 21U) | part(place.z());
-}
+constexpr double kWeight = 1.2;   // of the estimate of what is left: a way may be longer by that, and is found sooner
+constexpr double kNarrow = 10.0;  // times its length, that a way costs more where only the least is kept
 
 }  // namespace
 
@@ -33,7 +27,7 @@ double GridSearch::length(const Vec3& way) const {
 
 // Its index; nobody may be where too little is kept.
 int GridSearch::node_at(const Eigen::Vector3i& place, const Standing& standing) {
-  const auto [found, is_new] = index_.try_emplace(key(place), static_cast<int>(nodes_.size()));
+  const auto [found, is_new] = index_.try_emplace(grid_key(place), static_cast<int>(nodes_.size()));
   if (!is_new) return found->second;
   Node node;
   node.place = place;
@@ -42,7 +36,7 @@ int GridSearch::node_at(const Eigen::Vector3i& place, const Standing& standing) 
   const bool closed = std::any_of(query_.closed.begin(), query_.closed.end(), [&](const GridQuery::Column& column) {
     return (where - column.center).head<2>().norm() < column.radius;
   });
-  node.spare = !closed && query_.volume.contains(where) && place.cwiseAbs().maxCoeff() < kFarthest
+  node.spare = !closed && query_.volume.contains(where) && place.cwiseAbs().maxCoeff() < kFarthestCell
                    ? standing.distance(where, query_.radius + query_.wanted) - query_.radius
                    : -base::kInfinity;
   node.done = node.spare < query_.least;
@@ -57,15 +51,12 @@ GridSearch::State GridSearch::advance(const Standing& standing, int places) {
     Node& node = nodes_[static_cast<std::size_t>(root)];
     if (!node.done) {
       node.cost = 0.0;
-      open_.push_back({0.0, root});
+      open_.push(0.0, root);
     }
   }
   for (int n = 0; n < places && last_ < 0; ++n) {
     if (open_.empty() || nodes_.size() > kMostPlaces) return state_ = State::kNone;
-    std::pop_heap(open_.begin(), open_.end());
-    const int next = open_.back().node;
-    open_.pop_back();
-    visit(next, standing);
+    visit(open_.pop(), standing);
   }
   if (last_ >= 0) state_ = State::kFound;
   return state_;
@@ -97,8 +88,7 @@ void GridSearch::visit(int index, const Standing& standing) {
     if (!is_clear) continue;
     next.cost = cost;
     next.parent = index;
-    open_.push_back({cost + kWeight * length(query_.from - there), other});
-    std::push_heap(open_.begin(), open_.end());
+    open_.push(cost + kWeight * length(query_.from - there), other);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planner/base/types.hpp"
+#include "planner/horizon/grid.hpp"
 #include "planner/horizon/standing.hpp"
 
 namespace jink::planner::horizon {
@@ -63,13 +64,6 @@ class GridSearch {
     double spare = 0.0;  // of clearance, from the vehicle's surface; at most what is wanted
     bool done = false;
   };
-  struct Open {
-    double estimate;  // of the whole way
-    int node;
-    bool operator<(const Open& other) const {  // the best is the largest
-      return estimate != other.estimate ? estimate > other.estimate : node > other.node;
-    }
-  };
   [[nodiscard]] Vec3 at(const Eigen::Vector3i& place) const { return query_.to + query_.cell * place.cast<double>(); }
   [[nodiscard]] double length(const Vec3& way) const;
   int node_at(const Eigen::Vector3i& place, const Standing& standing);
@@ -80,8 +74,8 @@ class GridSearch {
   State state_ = State::kIdle;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, int> index_;
-  std::vector<Open> open_;  // a heap
-  int last_ = -1;           // beside `from`
+  OpenList open_;
+  int last_ = -1;  // beside `from`
 };
 
 }  // namespace jink::planner::horizon

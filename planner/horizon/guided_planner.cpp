@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/path_check.hpp"
 #include "planner/horizon/polyline.hpp"
 
 namespace jink::planner::horizon {
@@ -19,6 +20,7 @@ constexpr double kMoves = 0.1;     // m, by which that is elsewhere before or af
 constexpr double kLookStep = 0.5;  // s
 constexpr double kBlocked = 0.5;   // s, for which that lasts before
 constexpr double kRegret = 1.0;    // s, by which another arrives earlier to be taken
+constexpr double kWait = 1.0;      // s, that a way in time waits at one place; who waits less follows something
 
 /// Where it is known to lead to.
 base::TimedPoint known_end(const verify::Plan& plan) {
@@ -67,12 +69,55 @@ GuidedPlanner::Surroundings GuidedPlanner::surround(PathRequest& request) const 
   return around;
 }
 
+WayInTime GuidedPlanner::way_in_time(const PathRequest& request, const base::TimedPoint& from) {
+  return in_time_.find(request, from, planner_.settings().guide_cell);
+}
+
+// What a plan comes to cannot go on as soon as the way, or not stay.
+bool GuidedPlanner::is_behind(const verify::Plan& plan, const WayInTime& way, const PathRequest& request) {
+  WayInTime on;
+  if (plan.verification.free()) on = way_in_time(request, known_end(plan));
+  return way.arrival + kRegret < on.arrival || (way.stays && !on.stays);
+}
+
+// To where the way waits first, or to where it did before if there is none now. Nothing where it does not wait within
+// the horizon, or no free plan leads there.
+std::optional<verify::Plan> GuidedPlanner::plan_aside(const WayInTime& way, PathRequest& request, const Call& call) {
+  const bool arrives = way.arrival < base::kInfinity;
+  if (way.stays || arrives) {
+    aside_.clear();
+    bool waits = false;
+    for (std::size_t i = 0; i < way.path.size() && !waits; ++i) {
+      if (way.path[i].t > planner_.settings().horizon()) break;
+      aside_.push_back(way.path[i].position);
+      const bool ends = i + 1 == way.path.size();
+      waits = ends ? !arrives : way.path[i + 1].position == aside_.back() && way.path[i + 1].t > way.path[i].t + kWait;
+    }
+    if (!waits) aside_.clear();
+  }
+  if (aside_.empty()) return std::nullopt;
+  PathRequest aside = request;
+  aside.way = aside_;
+  aside.target = aside_.back();
+  verify::Plan plan = planner_.plan(aside, call.previous, call.seed, call.number, call.budget, call.pool);
+  if (!plan.verification.free()) return std::nullopt;
+  request = std::move(aside);
+  return plan;
+}
+
 verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
                                  std::uint64_t seed, std::uint64_t number, const base::Budget& budget,
                                  base::WorkerPool& pool) {
   const PathRequest given = request;
   guide_.lead(request, now, map);
   around_ = surround(request);
+  const Call call{previous, seed, number, budget, pool};
+  const base::TimedPoint here{0.0, request.position, request.velocity, Vec3::Zero()};
+  if (!aside_.empty() && is_valid(request)) {
+    if (std::optional<verify::Plan> plan = plan_aside(way_in_time(request, here), request, call))
+      return *std::move(plan);
+  }
+  aside_.clear();
   verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
   if (best.path.empty()) return best;
   const std::vector<Vec3> way = guide_.way().empty() ? std::vector{given.position, given.target}
@@ -106,11 +151,18 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     around_ = std::move(around);
     taken = k;
   }
-  best.evaluations = evaluations;
   if (taken) {
     guide_.take(*taken);
     blocked_since_.reset();
+  } else if (const WayInTime in_time = way_in_time(request, here); is_behind(best, in_time, request)) {
+    if (std::optional<verify::Plan> plan = plan_aside(in_time, request, call)) {
+      evaluations += plan->evaluations;
+      best = *std::move(plan);
+    } else {
+      aside_.clear();
+    }
   }
+  best.evaluations = evaluations;
   return best;
 }
 

@@ -13,6 +13,7 @@
 #include "planner/base/worker_pool.hpp"
 #include "planner/horizon/guide.hpp"
 #include "planner/horizon/horizon_planner.hpp"
+#include "planner/horizon/safe_intervals.hpp"
 #include "planner/verify/plan.hpp"
 
 namespace jink::planner::horizon {
@@ -27,8 +28,10 @@ class GuidedPlanner {
   /// HorizonPlanner::plan(), for the request as Guide::lead() makes it at `now`, s. Where plans lose
   /// more than 2 s on their way within the next 4 m for half a second, and something moves there, there is one more for
   /// each other way that has been found since; it is taken where it arrives a second earlier, as far as that can be
-  /// told. `request` becomes that of the plan: its tracks are this object's, until the next call, or
-  /// those given.
+  /// told. Where none is, a way in space and time is looked for (SafeIntervalSearch), from here and from where the
+  /// plan comes to. Where that from here arrives a second earlier, or ends where it can stay and the other does not,
+  /// plans lead to where it waits first, until such a way waits no more. `request` becomes that of the plan: its tracks
+  /// are this object's, until the next call, or those given.
   verify::Plan plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
                     std::uint64_t seed, std::uint64_t number, const base::Budget& budget, base::WorkerPool& pool);
 
@@ -43,10 +46,23 @@ class GuidedPlanner {
   };
   [[nodiscard]] Surroundings surround(PathRequest& request) const;
 
+  /// What plan() was asked for, beside the request.
+  struct Call {
+    const base::TimedPath& previous;
+    std::uint64_t seed, number;
+    const base::Budget& budget;
+    base::WorkerPool& pool;
+  };
+  [[nodiscard]] WayInTime way_in_time(const PathRequest& request, const base::TimedPoint& from);
+  [[nodiscard]] bool is_behind(const verify::Plan& plan, const WayInTime& way, const PathRequest& request);
+  std::optional<verify::Plan> plan_aside(const WayInTime& way, PathRequest& request, const Call& call);
+
   HorizonPlanner& planner_;
   Guide guide_;
+  SafeIntervalSearch in_time_;
   Surroundings around_;
   std::optional<double> blocked_since_;
+  std::vector<Vec3> aside_;  // the way to where is waited, until a way in time waits no more
 };
 
 }  // namespace jink::planner::horizon

@@ -114,10 +114,12 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     double wanted = std::min(request.commit, end);
     if (part.status == verify::PlanStatus::kReaches && led.target == from.target) wanted = end;
     if (part.status == verify::PlanStatus::kProgresses && budget.expired()) wanted = std::min(part.horizon, end);
-    const double keep = std::min(at_a_point(part.path, wanted), request.time_limit - t);
+    double keep = std::min(at_a_point(part.path, wanted), request.time_limit - t);
+    const bool waits = keep == end && led.target != from.target;  // until there is a way on
+    if (waits) keep = std::min(std::max(end, request.commit), request.time_limit - t);
     append(part.path, t, keep, whole.path);
     t += keep;
-    if (keep == end || t + kJoint >= request.time_limit || budget.expired()) break;
+    if ((keep == end && !waits) || t + kJoint >= request.time_limit || budget.expired()) break;
     const base::TimedPoint next = base::sample(part.path, keep);
     from.position = next.position;
     from.velocity = next.velocity;

@@ -85,6 +85,13 @@ std::vector<GuidedWorld> guided_worlds() {
   worlds.push_back(world("spiral", spiral(), {10, 0, 1.5}));
   worlds.back().scenario.world->max.z() = 4;
   worlds.back().scenario.world->min.y() = -14;
+  // What comes fills the corridor: into the recess before it is there, until it is past.
+  worlds.push_back(world("piston", {box({10, -1.65, 4}, {28, 0.3, 8}), box({-0.6, 1.65, 4}, {6.8, 0.3, 8}),
+                                    box({14.6, 1.65, 4}, {18.8, 0.3, 8}), box({4, 4.15, 4}, {3, 0.3, 8}),
+                                    box({2.65, 2.9, 4}, {0.3, 2.6, 8}), box({5.35, 2.9, 4}, {0.3, 2.6, 8})}));
+  worlds.back().scenario.world->max.z() = 3.3;
+  worlds.back().scenario.obstacles.push_back(
+      {config::BoxShape{{1, 2.9, 2.9}}, config::LinearMotion{{12, 0, 1.8}, {-1, 0, 0}, Vec3::Zero()}});
   return worlds;
 }
 
