@@ -28,6 +28,7 @@ constexpr double kNarrower = 0.05;       // m, by which a way may get narrower u
 constexpr double kCutOff = 0.3;          // m, of the way, that need not be in sight
 constexpr double kRoom = 0.1;            // m, beside the middle of a narrow place, for the vehicle to pass it
 constexpr double kOutOfTheWay = 50.0;    // m, farther away than the target, what stands does not matter
+constexpr double kBeforeClosed = 1.0;    // m, along a way before where it is closed, to wait there
 constexpr double kStrayed = 2.5;         // m, from the way, where it is looked for anew
 constexpr double kTied = 1e-9;           // m: of two legs that are as near the later one counts
 constexpr double kAhead = 5.0;           // m, along the way, that a vehicle may have gone since
@@ -75,7 +76,8 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
     search_ = {};
     search_again_ = now;
   }
-  const bool holds = !way_.empty() && pass(request.position) && is_open(way_, request);
+  const bool known = !way_.empty() && pass(request.position);
+  const bool holds = known && is_open(way_, request);
   if (!(holds && taken_) && (standing_.empty() || standing_.is_clear(request.position, request.target,
                                                                      request.vehicle.radius + request.margin))) {
     if (!way_.empty()) begin_way({});
@@ -83,8 +85,12 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
     look_for_others(request);
     return;
   }
-  if (!holds) look_for_way(request, now);
+  if (!holds) look_for_way(request, now, known);
   if (way_.empty()) return;
+  if (!is_open(way_, request)) {
+    lead_along(up_to_closed(request), request);
+    return;
+  }
   look_for_others(request);
   const double left = (way_.front() - request.position).norm() + length_of(way_);
   request.stuck = request.stuck && progress_.stalls(now, left);
@@ -175,15 +181,20 @@ void Guide::watch(const PathRequest& request, double now) {
   });
 }
 
-void Guide::look_for_way(const PathRequest& request, double now) {
+// A way that is `known` and closed now is kept where there is no other.
+void Guide::look_for_way(const PathRequest& request, double now, bool known) {
   if (now < search_again_) return;
   const GridSearch::State state = advance(search_, request, {});
   if (state == GridSearch::State::kSearching) return;
   if (state == GridSearch::State::kNone)
     search_again_ = knowledge_ == Knowledge::kWhole ? base::kInfinity : now + kSearchAgain;
-  begin_way(state == GridSearch::State::kFound ? pulled_tight(search_.way(), request, {}) : std::vector<Vec3>());
+  if (state == GridSearch::State::kFound) {
+    begin_way(pulled_tight(search_.way(), request, {}));
+    if (!is_open(way_, request)) way_.clear();  // what stands has changed since
+  } else if (!known) {
+    begin_way({});
+  }
   search_ = {};
-  if (!way_.empty() && !is_open(way_, request)) way_.clear();  // what stands has changed since
 }
 
 // On a coarse grid, then on a fine one. There a place may be half a cell nearer than the middle of what can be passed.
@@ -337,6 +348,25 @@ bool Guide::is_open(std::span<const Vec3> way, const PathRequest& request) const
   return true;
 }
 
+// The way to where one waits for it to be opened.
+std::vector<Vec3> Guide::up_to_closed(const PathRequest& request) const {
+  const double kept = request.vehicle.radius + std::max(0.0, settings_.guide_margin - kNarrower);
+  const double length = length_of(way_);
+  double open = 0.0;
+  // The vehicle may be nearer to something where it is.
+  while (open < length && (open <= kept || standing_.distance(place_along(way_, open), kept) >= kept)) open += kSample;
+  open = std::max(0.0, open - kBeforeClosed);
+  std::vector<Vec3> way{way_.front()};
+  double along = 0.0;
+  for (std::size_t i = 1; i < way_.size(); ++i) {
+    along += (way_[i] - way_[i - 1]).norm();
+    if (along >= open) break;
+    way.push_back(way_[i]);
+  }
+  way.push_back(place_along(way_, open));
+  return way;
+}
+
 // Takes off the part of the way that the vehicle has gone; false where it has left the way.
 bool Guide::pass(const Vec3& position) {
   double least = base::kInfinity;
@@ -402,6 +432,7 @@ std::size_t Guide::lead_ahead(std::span<const Vec3> way, PathRequest& request) c
     return !is_aside(leg, place, kCutOff) || standing_.is_clear(request.position, place, kept);
   };
   std::size_t leg = way.size() - 1;
+  request.target = way[leg];
   if (!is_aside(leg, way[leg], settings_.guide_deviation)) return leg;
   while (leg > 1 && !is_near(leg, way[leg])) --leg;
   if (leg + 1 == way.size()) return leg;

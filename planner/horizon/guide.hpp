@@ -33,7 +33,8 @@ class Guide {
   /// the margin, `standing_margin` is as small as it has to be, at least settings.guide_margin, and the vehicle as much
   /// slower; standing() says beside which tracks.
   /// `now`: s, in a clock that goes on. `map` stands too, all of it. Looks at settings.guide_places places of the grid
-  /// at most, so that a way may be found some calls later.
+  /// at most, so that a way may be found some calls later. Where a way is closed and there is no other, it leads to
+  /// before where it is closed.
   void lead(PathRequest& request, double now, const MapPlace& map = {});
 
   /// The way that is led along, from beside the vehicle to the target; empty: straight on. ENU, m.
@@ -72,7 +73,8 @@ class Guide {
   void look_for_others(const PathRequest& request);
   [[nodiscard]] std::optional<GridQuery::Column> gate_of(std::span<const Vec3> way, double enough) const;
   [[nodiscard]] bool are_alike(std::span<const Vec3> a, std::span<const Vec3> b) const;
-  void look_for_way(const PathRequest& request, double now);
+  void look_for_way(const PathRequest& request, double now, bool known);
+  [[nodiscard]] std::vector<Vec3> up_to_closed(const PathRequest& request) const;
   void centre(std::vector<Vec3>& way, double enough) const;
   [[nodiscard]] std::vector<Vec3> pulled_tight(std::vector<Vec3> way, const PathRequest& request,
                                                std::span<const GridQuery::Column> closed) const;

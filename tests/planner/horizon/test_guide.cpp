@@ -254,6 +254,36 @@ TEST(Guide, FindsOtherWaysWhenThatIsWanted) {
   EXPECT_TRUE(guide.others().empty());
 }
 
+// A door that closes may open again: where there is no other way it is waited there, not where it closed.
+TEST(Guide, WaitsBeforeAClosedDoorWhereThereIsNoOtherWay) {
+  const std::vector<base::Track> open = numbered(wall(12, 0, 1.3));
+  std::vector<base::Track> closed = open;
+  closed.push_back(box({12, 0, 4}, {0.2, 1.3, 12}));
+  closed.back().id = 9;
+  Guide guide(base::HorizonSettings{}, Guide::Knowledge::kWhole);
+  const Vec3 start(6, 5, 2);
+  const auto target = [&](const std::vector<base::Track>& tracks, const Vec3& position, double now) {
+    PathRequest request = guide_request(tracks, position);
+    guide.lead(request, now);
+    return request.target;
+  };
+  EXPECT_GT(target(open, start, 0.0).x(), 11.0);
+  for (const double now : {0.1, 0.2, 5.0}) {
+    const Vec3 waits = target(closed, start, now);
+    EXPECT_LT(waits.x(), 11.3);
+    EXPECT_GT(waits.x(), 10.0);
+    EXPECT_LT(std::abs(waits.y()), 1.0);
+  }
+  const Vec3 before(10.8, 0.1, 2);
+  EXPECT_LT((target(closed, before, 6.0) - before).norm(), 0.5) << "it is there";
+  EXPECT_GT(target(open, before, 6.1).x(), 12.0) << "at once";
+  // Nothing was known of a way when it was closed: straight on, as ever.
+  Guide other(base::HorizonSettings{}, Guide::Knowledge::kWhole);
+  PathRequest request = guide_request(closed, start);
+  other.lead(request, 0.0);
+  EXPECT_EQ(request.target, guide_request(closed, start).target);
+}
+
 TEST(Guide, PassesByTheMapAsByTracks) {
   const geometry::StaticMap map(dead_end());
   PathRequest request = guide_request({});
