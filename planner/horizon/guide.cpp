@@ -85,9 +85,10 @@ void Guide::lead(PathRequest& request, double now, const MapPlace& map) {
     look_for_others(request);
     return;
   }
+  closed_off_ = closed_off_ && known && !holds;
   if (!holds) look_for_way(request, now, known);
   if (way_.empty()) return;
-  if (!is_open(way_, request)) {
+  if (closed_off_) {
     lead_along(up_to_closed(request), request);
     return;
   }
@@ -119,7 +120,7 @@ void Guide::take(std::size_t other) {
 void Guide::begin_way(std::vector<Vec3> way) {
   way_ = std::move(way);
   progress_.begin_anew();
-  taken_ = false;
+  taken_ = closed_off_ = false;
   forget_others();
 }
 
@@ -191,7 +192,9 @@ void Guide::look_for_way(const PathRequest& request, double now, bool known) {
   if (state == GridSearch::State::kFound) {
     begin_way(pulled_tight(search_.way(), request, {}));
     if (!is_open(way_, request)) way_.clear();  // what stands has changed since
-  } else if (!known) {
+  } else if (known) {
+    closed_off_ = true;
+  } else {
     begin_way({});
   }
   search_ = {};

@@ -94,7 +94,8 @@ class Guide {
   double sigma_ = 0.0;  // m, the largest standard deviation of their positions
   GridSearch search_;
   std::vector<Vec3> way_;
-  bool taken_ = false;  // though another was shorter: it is kept even where straight on is free
+  bool taken_ = false;       // though another was shorter: it is kept even where straight on is free
+  bool closed_off_ = false;  // the way is closed, and there is no other
   bool wants_others_ = false;
   GridSearch other_search_;
   int tries_ = 0;
