@@ -6,6 +6,7 @@ import json
 import os
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -54,7 +55,7 @@ class Page:
         # The browser reads commands from its descriptor 3 and answers on 4.
         script = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
         self.process = subprocess.Popen(["bash", "-c", script, "bash", *command], pass_fds=(to_browser, from_browser),
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         os.close(to_browser)
         os.close(from_browser)
         self.buffer, self.next, self.session, self.errors = b"", 0, None, []
@@ -70,7 +71,7 @@ class Page:
         return self
 
     def __exit__(self, kind, error, trace):
-        self.process.kill()
+        os.killpg(self.process.pid, signal.SIGKILL)  # its helpers as well: they would go on to write its profile
         self.process.wait()
         os.close(self.out)
         os.close(self.input)
