@@ -65,6 +65,9 @@ class Mission {
 /// An index from 0 to `more`, as an int.
 [[nodiscard]] int random_count(RandomStream& random, int least, int most);
 
+/// Uniform in the box.
+[[nodiscard]] Vec3 random_point(RandomStream& random, const planner::base::Box& box);
+
 /// Limits of a random vector's length and of its elevation.
 struct VectorRange {
   double min = 1.0;
@@ -98,6 +101,17 @@ void add_meeting(config::Scenario& scenario, const Mission& mission, double alon
 /// In any direction, and so short that a sphere of `radius` that is so far off still overlaps the vehicle deeply.
 [[nodiscard]] Vec3 random_offset(RandomStream& random, double radius);
 
+/// What others fly with.
+struct OthersLimits {
+  double radius = 0.0;        ///< m
+  double speed = 0.0;         ///< m/s, the limit and what is cruised at
+  double climb = 0.0;         ///< m/s
+  double acceleration = 0.0;  ///< m/s²
+  double jerk = 0.0;          ///< m/s³
+};
+/// The scenario's vehicle is one of these limits.
+void set_limits(config::Scenario& scenario, const OthersLimits& limits);
+
 // One builder for each family: start, target, world and obstacles. What they leave out make_world() adds.
 void build_crossing(config::Scenario& scenario, RandomStream& random);
 void build_head_on(config::Scenario& scenario, RandomStream& random);
@@ -128,5 +142,10 @@ void build_lift_door(config::Scenario& scenario, RandomStream& random);
 void build_racks(config::Scenario& scenario, RandomStream& random);
 void build_sliding_gate(config::Scenario& scenario, RandomStream& random);
 void build_wires(config::Scenario& scenario, RandomStream& random);
+void build_sando_launched(config::Scenario& scenario, RandomStream& random, int count);
+void build_panther(config::Scenario& scenario, RandomStream& random, double slower);
+void build_fapp(config::Scenario& scenario, RandomStream& random);
+void build_cerlab_corridor(config::Scenario& scenario, RandomStream& random);
+void build_fcp(config::Scenario& scenario, RandomStream& random, int count);
 
 }  // namespace jink::sim::families

@@ -25,12 +25,6 @@ void fly_at_the_limit(config::Scenario& scenario) {
   scenario.vehicle.max_jerk = 100.0;
 }
 
-Vec3 random_center(RandomStream& random, const planner::base::Box& box) {
-  const double x = random.uniform(box.min.x(), box.max.x());
-  const double y = random.uniform(box.min.y(), box.max.y());
-  return {x, y, random.uniform(box.min.z(), box.max.z())};
-}
-
 /// Whether it never leaves the target by a metre for long enough that somebody could arrive and stay for a while. All
 /// motions here have gone round once in that time, or to their farthest.
 bool occupies_target(const world::World& world) {
@@ -80,7 +74,7 @@ void build_mader(config::Scenario& scenario, RandomStream& random, int count) {
   const planner::base::Box centers{{2, -3, 1}, {75, 3, 2}};
   const int curved = static_cast<int>(kCurved * count);
   add_cubes(scenario, count, [&](int i) -> config::Motion {
-    const Vec3 center = random_center(random, centers);
+    const Vec3 center = random_point(random, centers);
     const double offset = random.uniform(-kTwoPi, kTwoPi);
     if (i < curved) return config::TrefoilMotion{center, Vec3::Ones(), kSlower, offset};
     const double frequency = 1.0 / (kTwoPi * kSlower);
@@ -102,9 +96,9 @@ void build_sando(config::Scenario& scenario, RandomStream& random, int count) {
   const planner::base::Box centers{{5, -6, 0.5}, {100, 6, 4.5}};
   const int curved = static_cast<int>(kCurved * count);
   add_cubes(scenario, count, [&](int i) -> config::Motion {
-    const Vec3 center = random_center(random, centers);
+    const Vec3 center = random_point(random, centers);
     if (i >= curved) return config::LinearMotion{center};
-    const Vec3 scale = random_center(random, {Vec3::Constant(2.0), Vec3::Constant(4.0)});
+    const Vec3 scale = random_point(random, {Vec3::Constant(2.0), Vec3::Constant(4.0)});
     const double offset = random.uniform(0.0, 3.0);
     return config::TrefoilMotion{center, scale, random.uniform(10.0, 12.0), offset};
   });

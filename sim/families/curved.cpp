@@ -12,13 +12,6 @@
 namespace jink::sim::families {
 namespace {
 
-Vec3 random_point(RandomStream& random, const planner::base::Box& box) {
-  const double x = random.uniform(box.min.x(), box.max.x());
-  const double y = random.uniform(box.min.y(), box.max.y());
-  const double z = random.uniform(box.min.z(), box.max.z());
-  return {x, y, z};
-}
-
 /// Bouncing in `box` such that it is at `place` at time `t`: the motion back from there, turned round.
 config::BounceMotion bounce_through(const Vec3& place, const Vec3& velocity, double t, const planner::base::Box& box) {
   const world::ObstacleState before = world::state_at(config::BounceMotion{place, -velocity, box.min, box.max}, t);

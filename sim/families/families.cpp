@@ -67,6 +67,12 @@ int random_count(RandomStream& random, int least, int most) {
   return least + static_cast<int>(random.below(static_cast<std::uint64_t>(most - least) + 1));
 }
 
+Vec3 random_point(RandomStream& random, const planner::base::Box& box) {
+  const double x = random.uniform(box.min.x(), box.max.x());
+  const double y = random.uniform(box.min.y(), box.max.y());
+  return {x, y, random.uniform(box.min.z(), box.max.z())};
+}
+
 Vec3 random_vector(RandomStream& random, const VectorRange& range) {
   const double length = random.uniform(range.min, range.max);
   const double azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
@@ -134,6 +140,7 @@ struct Family {
   Build build;
   bool blocked = true;
   bool map = false;
+  bool on_request = false;
 };
 
 template <int count>
@@ -144,6 +151,24 @@ void build_mader_of(config::Scenario& scenario, planner::base::RandomStream& ran
 template <int count>
 void build_sando_of(config::Scenario& scenario, planner::base::RandomStream& random) {
   build_sando(scenario, random, count);
+}
+
+template <int count>
+void build_sando_launched_of(config::Scenario& scenario, planner::base::RandomStream& random) {
+  build_sando_launched(scenario, random, count);
+}
+
+template <int count>
+void build_fcp_of(config::Scenario& scenario, planner::base::RandomStream& random) {
+  build_fcp(scenario, random, count);
+}
+
+void build_panther_slow(config::Scenario& scenario, planner::base::RandomStream& random) {
+  build_panther(scenario, random, 2.3);
+}
+
+void build_panther_fast(config::Scenario& scenario, planner::base::RandomStream& random) {
+  build_panther(scenario, random, 1.2);
 }
 
 // The place in the list is the random stream: new ones go to the end, so that the worlds of the others stay.
@@ -184,11 +209,25 @@ constexpr std::array kFamilies = {Family{"crossing", true, build_crossing},
                                   Family{"lift_door", false, build_lift_door, true, true},
                                   Family{"racks", false, build_racks, true, true},
                                   Family{"sliding_gate", false, build_sliding_gate, true, true},
-                                  Family{"wires", false, build_wires, true, true}};
+                                  Family{"wires", false, build_wires, true, true},
+                                  Family{"sando_launched_50", false, build_sando_launched_of<50>, false, false, true},
+                                  Family{"sando_launched_100", false, build_sando_launched_of<100>, false, false, true},
+                                  Family{"sando_launched_200", false, build_sando_launched_of<200>, false, false, true},
+                                  Family{"panther_slow", false, build_panther_slow, false, false, true},
+                                  Family{"panther_fast", false, build_panther_fast, false, false, true},
+                                  Family{"fapp_50", false, build_fapp, false, false, true},
+                                  Family{"cerlab_corridor", false, build_cerlab_corridor, false, true, true},
+                                  Family{"fcp_50", false, build_fcp_of<50>, false, false, true},
+                                  Family{"fcp_280", false, build_fcp_of<280>, false, false, true}};
 
+template <bool on_request>
 constexpr auto kNames = [] {
-  std::array<std::string_view, kFamilies.size()> names;
-  std::transform(kFamilies.begin(), kFamilies.end(), names.begin(), [](const Family& family) { return family.name; });
+  constexpr auto wanted = [](const Family& family) { return family.on_request == on_request; };
+  std::array<std::string_view, std::count_if(kFamilies.begin(), kFamilies.end(), wanted)> names;
+  std::size_t next = 0;
+  for (const Family& family : kFamilies) {
+    if (wanted(family)) names[next++] = family.name;
+  }
   return names;
 }();
 
@@ -256,7 +295,11 @@ double default_time_limit(const config::Scenario& scenario) {
 }
 
 std::span<const std::string_view> world_families() {
-  return kNames;
+  return kNames<false>;
+}
+
+std::span<const std::string_view> others_families() {
+  return kNames<true>;
 }
 
 bool is_linear(std::string_view family) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeded families of worlds to judge planners on. In every world but the corridors of the literature the straight line
-// is blocked: a vehicle that flies it and looks at nothing hits an obstacle, or another vehicle of the team that does
+// Seeded families of worlds to judge planners on. In every world but those of the literature the straight line is
+// blocked: a vehicle that flies it and looks at nothing hits an obstacle, or another vehicle of the team that does
 // the same. Whether a free flight exists is not promised; most have one.
 #pragma once
 
@@ -27,7 +27,7 @@ inline constexpr double kMapClearance = 0.5;
 /// by at least this much, in metres.
 inline constexpr double kStraightOverlap = 0.1;
 
-/// The names that make_world() knows, in a fixed order.
+/// The names of the families that a campaign flies unless told, in a fixed order.
 ///
 /// Constant velocity: crossing (movers timed to meet the vehicle), head_on, overtaking (slower ones ahead and faster
 /// ones from behind), falling (from above through the line), gates (pairs of spheres with a gap too small for the
@@ -60,12 +60,21 @@ inline constexpr double kStraightOverlap = 0.1;
 /// - wires: overhead lines and fences of wires 1 to 3 cm thick, masts with stays; people.
 [[nodiscard]] std::span<const std::string_view> world_families();
 
+/// The names of those that are flown on request alone, in a fixed order: others' worlds as they launch or describe
+/// them, with their vehicle's limits. The straight line may be free. Sources and what differs: launched.cpp, fcp.cpp.
+/// - sando_launched_50, _100, _200: the trefoils as their launch file has them, poles and beams.
+/// - panther_slow, panther_fast: five trefoils in a row.
+/// - fapp_50: 50 columns that drift and 20 that stand, sensed from 8 m.
+/// - cerlab_corridor: nine people and nine boxes; has a map.
+/// - fcp_50, fcp_280: small spheres in a box that turn, stop and go, with noise.
+[[nodiscard]] std::span<const std::string_view> others_families();
+
 /// Whether every obstacle of the family's worlds keeps a constant velocity for ever, so that a track of t = 0 tells all
 /// of its future. False for an unknown family.
 [[nodiscard]] bool is_linear(std::string_view family);
 
 /// Whether the straight flight is blocked in every world of the family, by kStraightOverlap. Not so in the corridors of
-/// the literature, whose obstacles are drawn without regard to it. False for an unknown family.
+/// the literature and in others' worlds, whose obstacles are drawn without regard to it. False for an unknown family.
 [[nodiscard]] bool blocks_straight_line(std::string_view family);
 
 /// Whether it is one of the known places, whose worlds have a map. False for an unknown family.
@@ -73,9 +82,9 @@ inline constexpr double kStraightOverlap = 0.1;
 
 /// A world of that family: the same for the same arguments. ENU, m, s; named "family-seed", with perfect sensing
 /// (Tier::kPerfect). For the AR.Drone, 15 to 40 m from start to target, with the default time limit, unless the family
-/// is from the literature. It passes the checks of config::load_scenario; kStartClearance, kMapClearance and
-/// kStraightOverlap hold. Throws std::invalid_argument for an unknown family. Deterministic; the C library's sine and
-/// cosine have a say in the last bit.
+/// is from the literature or another's. It passes the checks of config::load_scenario; kStartClearance, kMapClearance
+/// and kStraightOverlap hold. Throws std::invalid_argument for an unknown family. Deterministic; the C library's sine
+/// and cosine have a say in the last bit.
 [[nodiscard]] config::Scenario make_world(std::string_view family, std::uint64_t seed);
 
 /// How well obstacles are seen and the vehicle knows where it is.

@@ -47,21 +47,25 @@ struct ArenaOptions {
   std::string oracle = "on", logs = "on";
 };
 
-/// "a,b" or "all": in the order of `known`.
-std::vector<std::string> chosen(const char* option, const std::string& text, std::span<const std::string_view> known) {
+/// "a,b" or "all": in the order of `known`, then of those that "all" leaves out.
+std::vector<std::string> chosen(const char* option, const std::string& text, std::span<const std::string_view> known,
+                                std::span<const std::string_view> on_request = {}) {
   std::vector<std::string> wanted;
   std::istringstream list(text);
   for (std::string name; std::getline(list, name, ',');) wanted.push_back(name);
   if (wanted.empty()) wanted.emplace_back();
   std::vector<std::string> result;
-  for (const std::string_view name : known) {
+  if (text == "all") return {known.begin(), known.end()};
+  std::vector<std::string_view> every(known.begin(), known.end());
+  every.insert(every.end(), on_request.begin(), on_request.end());
+  for (const std::string_view name : every) {
     const auto times = std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) { return one == name; });
     if (times > 1) throw cli::UsageError(fmt::format("{}: '{}' is there twice", option, name));
-    if (times == 1 || text == "all") result.emplace_back(name);
+    if (times == 1) result.emplace_back(name);
   }
   for (const std::string& name : wanted) {
-    if (text != "all" && std::find(known.begin(), known.end(), name) == known.end())
-      throw cli::UsageError(fmt::format("{}: '{}' is not one of {}, or all", option, name, fmt::join(known, ", ")));
+    if (std::find(every.begin(), every.end(), name) == every.end())
+      throw cli::UsageError(fmt::format("{}: '{}' is not one of {}, or all", option, name, fmt::join(every, ", ")));
   }
   return result;
 }
@@ -75,7 +79,7 @@ std::shared_ptr<const arena::Recording> recording_of(const ArenaOptions& options
 std::vector<std::string> families_of(const char* option, const std::string& text, const arena::Recording* recording) {
   static constexpr std::array kRecordedAlone{sim::families::kRecorded};
   if (recording != nullptr) return chosen(option, text, kRecordedAlone);
-  return chosen(option, text, sim::families::world_families());
+  return chosen(option, text, sim::families::world_families(), sim::families::others_families());
 }
 
 arena::CampaignSettings settings_of(const ArenaOptions& options, const config::Settings& planner,
@@ -245,7 +249,8 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
   const auto options = std::make_shared<ArenaOptions>();
   const auto names = [](std::span<const std::string_view> all) { return fmt::format("{}", fmt::join(all, ", ")); };
   app.add_option("--families", options->families,
-                 "families of worlds, A,B or all: " + names(sim::families::world_families()))
+                 "families of worlds, A,B or all: " + names(sim::families::world_families()) +
+                     "; not in all: " + names(sim::families::others_families()))
       .show_default();
   app.add_option("--recorded", options->recorded,
                  "worlds out of a recording instead, of movers that did what they do in it: CSV of t, id, x, y, z\n"
