@@ -18,8 +18,9 @@ namespace {
 constexpr double kLaunchedCube = 0.8;  // m, edge of the cubes that move, SANDO's and PANTHER's
 
 /// x = sx/6 (sin τ + 2 sin 2τ), y = sy/5 (cos τ - 2 cos 2τ), z = -sz/2 sin 3τ about the centre, τ = t/slower + offset.
-/// differs: as both write the formula out, the offset is not multiplied with τ, as in sin(2 t/slower + offset), which
-/// turns each curve about the vertical by a third of its offset and shifts its phases.
+/// differs: as both write the formula out, the offset is not multiplied with the rest, as in sin(2 t/slower + offset).
+/// Those are other curves of the same kind and size: with scales alike, turned about the vertical and shifted in
+/// height.
 config::Obstacle launched_trefoil(const Vec3& center, const Vec3& scale, double slower, double offset) {
   const Vec3 divided = scale.cwiseQuotient(Vec3(6.0, 5.0, 2.0));
   return {config::BoxShape{Vec3::Constant(kLaunchedCube)}, config::TrefoilMotion{center, divided, slower, offset}};

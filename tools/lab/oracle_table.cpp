@@ -55,8 +55,10 @@ int main(int argc, char** argv) {
   }
   std::vector<std::string> families(argv + std::min(argc, 2), argv + argc);
   const auto known = jink::sim::families::world_families();
+  const auto others = jink::sim::families::others_families();
   for (const std::string& family : families) {
     if (std::find(known.begin(), known.end(), family) != known.end()) continue;
+    if (std::find(others.begin(), others.end(), family) != others.end()) continue;
     std::fprintf(stderr, "FAMILY '%s' is not a world family\n", family.c_str());
     return 2;
   }
