@@ -14,7 +14,7 @@ inline constexpr int kFarthestCell = 1 << 19;
 
 /// Another number for each cell.
 [[nodiscard]] inline std::uint64_t grid_key(const Eigen::Vector3i& cell) {
-  const auto part = [](int x) { return static_cast<std::uint64_t>(x + kFarthestCell); };
+  const auto part = [](int x) { return static_cast<std::uint64_t>(std::int64_t{x} + kFarthestCell); };
   return (part(cell.x()) << 42U) | (part(cell.y()) << 21U) | part(cell.z());
 }
 

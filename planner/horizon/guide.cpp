@@ -315,6 +315,7 @@ std::vector<Vec3> Guide::pulled_tight(std::vector<Vec3> way, const PathRequest& 
   centre(way, request.vehicle.radius + settings_.guide_margin);
   const double wanted = request.vehicle.radius + first_clearance(request, settings_);
   std::vector<double> clearance;
+  clearance.reserve(way.size());
   for (const Vec3& place : way) clearance.push_back(standing_.distance(place, wanted));
   std::vector<Vec3> tight{way.front()};
   for (std::size_t i = 0; i + 1 < way.size();) {

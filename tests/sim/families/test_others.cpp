@@ -38,7 +38,7 @@ Vec3 launched_trefoil(const Vec3& center, const Vec3& scale, double tau) {
 /// That it moves by the formula; its scales, before they are divided.
 Vec3 expect_launched_trefoil(const config::Obstacle& obstacle) {
   const auto& motion = std::get<config::TrefoilMotion>(obstacle.motion);
-  const Vec3 scale = motion.scale.cwiseProduct(Vec3(6, 5, 2));
+  Vec3 scale = motion.scale.cwiseProduct(Vec3(6, 5, 2));
   EXPECT_EQ(edges(obstacle), Vec3(0.8, 0.8, 0.8));
   for (double t = 0; t < 40; t += 1.7) {
     const Vec3 expected = launched_trefoil(motion.center, scale, t / motion.slower + motion.offset);
