@@ -28,7 +28,7 @@ void in_time(benchmark::State& state) {
   request.margin = 0.35;
   request.tracks = tracks;
   planner::horizon::SafeIntervalSearch search;
-  for (auto step : state)
+  for ([[maybe_unused]] auto _ : state)
     benchmark::DoNotOptimize(search.find(request, {0.0, request.position, Vec3::Zero(), Vec3::Zero()}, 0.5));
 }
 BENCHMARK(in_time)->ArgName("boxes")->Arg(20)->Arg(200)->Unit(benchmark::kMicrosecond);

@@ -30,7 +30,7 @@ void refuge(benchmark::State& state) {
   const planner::base::TimedPath stays{{0.0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   bridge::companion::Retreat retreat{planner::base::HorizonSettings{}};
   double now = 0.0;
-  for (auto step : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(retreat.choose(now, request, stays, movers));
     now += 0.05;
   }

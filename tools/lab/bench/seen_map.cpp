@@ -55,7 +55,7 @@ void map_update(benchmark::State& state) {
                              nullptr);
   std::size_t next = 0;
   double time = 0.0;
-  for (auto step : state) {
+  for ([[maybe_unused]] auto _ : state) {
     bridge::map::CloudJob job = jobs[next++ % jobs.size()];
     job.time = time += kCloudPeriod;
     mapper.put(std::move(job));
