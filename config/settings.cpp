@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <system_error>
 #include <variant>
 
 #include "config/yaml.hpp"
@@ -341,7 +342,16 @@ std::vector<SettingText> list_settings(const Settings& settings) {
 std::filesystem::path config_folder() {
   // Read only, and nothing in jink changes the environment.
   const char* const folder = std::getenv("JINK_CONFIG_DIR");  // NOLINT(concurrency-mt-unsafe)
-  return folder != nullptr && *folder != '\0' ? folder : JINK_CONFIG_DIR;
+  if (folder != nullptr && *folder != '\0') return folder;
+  std::error_code unknown;  // where there is no /proc
+  const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+  const std::filesystem::path prefix = programs.parent_path();
+  // What is installed to /usr has its files in /etc; to any other folder, in its own etc. A build folder leads to the
+  // source tree's.
+  const std::filesystem::path installed = (prefix.filename() == "usr" ? prefix.parent_path() : prefix) / "etc/jink";
+  for (const std::filesystem::path& candidate : {installed, programs / "etc/jink"})
+    if (std::filesystem::exists(candidate / "planner.yaml", unknown)) return candidate;
+  return "/etc/jink";
 }
 
 }  // namespace jink::config

@@ -59,7 +59,8 @@ Settings recorded_settings(const std::string& source, const std::vector<SettingT
                            const std::vector<std::string>& overrides, std::vector<std::string>& missing);
 
 /// Where the project's own files are, planner.yaml, vehicles/, scenarios/ and missions/: the environment variable
-/// JINK_CONFIG_DIR, else the source tree's config folder. The environment is read at each call.
+/// JINK_CONFIG_DIR, else etc/jink of where the program is installed (/etc/jink for /usr/bin), else the source tree's
+/// config folder for a program in its build folder, else /etc/jink. The environment is read at each call.
 std::filesystem::path config_folder();
 
 }  // namespace jink::config
