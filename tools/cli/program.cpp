@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "config/error.hpp"
+#include "planner/base/version.hpp"
 
 namespace jink::tools::cli {
 namespace {

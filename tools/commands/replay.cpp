@@ -7,6 +7,7 @@
 
 #include "bridge/base/clock.hpp"
 #include "config/scenario.hpp"
+#include "planner/base/version.hpp"
 #include "sim/flight/closed_loop.hpp"
 #include "tools/cli/progress_line.hpp"
 #include "tools/cli/summaries.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planner/base/solid.hpp"
+#include "planner/base/version.hpp"
 #include "tools/base/exit_code.hpp"
 
 namespace jink::tools::log {

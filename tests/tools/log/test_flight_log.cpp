@@ -14,6 +14,7 @@
 #include <sstream>
 #include <thread>
 
+#include "planner/base/version.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/log/log_reader.hpp"

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "config/scenario_writer.hpp"
+#include "planner/base/version.hpp"
 #include "sim/families/families.hpp"
 #include "sim/families/recorded.hpp"
 #include "tools/cli/command_line.hpp"

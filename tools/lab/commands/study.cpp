@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "planner/base/version.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/figures/figure.hpp"
 #include "tools/lab/campaign/options.hpp"
