@@ -80,6 +80,7 @@ BAD_USAGE = [
     (["export", "no-such-log.jsonl", "--mcap", "x.mcap"], ["no-such-log.jsonl"]),
     (["export", "a.jsonl"], ["--mcap"]),
     (["fly", CONFIG / "missions" / "sitl.yaml", "--report", "x.html"], ["--report", "--log"]),
+    (["demo", "--out", "/dev/null/x"], ["--out", "/dev/null/x"]),
 ]
 
 
@@ -232,7 +233,7 @@ def every_motion(jink, folder):
 
 
 def help_reads(jink):
-    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["doctor"], ["report"], ["export"], ["arena"], ["study"]):
+    for command in ([], ["plan"], ["replay"], ["sim"], ["fly"], ["doctor"], ["report"], ["export"], ["demo"], ["arena"], ["study"]):
         done = jink.run(*command, "--help")
         check(done.returncode == 0 and "Usage: jink" in done.stdout and not done.stderr, f"jink {' '.join(command)} --help")
 

@@ -22,7 +22,8 @@ int become_laboratory(char** argv) {
   const std::string laboratory = (here.parent_path() / "jink-lab").string();
   ::execv(laboratory.c_str(), argv);
   return cli::complain("this needs the laboratory, " + laboratory + ", which cannot be started (" +
-                       std::generic_category().message(errno) + "); `tools/build.sh release jink_lab` builds it");
+                       std::generic_category().message(errno) +
+                       "); it is in the package jink-lab, and `tools/build.sh release jink_lab` builds it");
 }
 
 /// For --help alone: these commands are the laboratory's.
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
               commands::add_doctor(jink),
               commands::add_report(jink),
               commands::add_export(jink),
+              commands::add_demo(jink),
               listed(jink, "arena", "fly many seeded worlds, and make tables of it"),
               listed(jink, "study", "run the paper's experiments again")};
     });

@@ -105,7 +105,7 @@ void CommonOptions::add_to(const Parser& parser) {
       .show_default();
   parser.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
       .transform(whole_number(1, kMostThreads));
-  parser.add_option("--config", config, "planner parameters (default: config/planner.yaml)").check(some_name());
+  parser.add_option("--config", config, "planner parameters (default: the shipped planner.yaml)").check(some_name());
   parser.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated").single_value();
   parser.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr")
       .check(some_name());  // that it can be written is each command's to check: campaigns make its folder first

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 target reached, nothing hit; 1 the flight or the plan failed; 2 bad usage, file or value;\n"
     "3 a peer (autopilot, obstacle tracks) did not show up.\n"
-    "`jink COMMAND --help` tells more. First flight: tools/demo.sh";
+    "`jink COMMAND --help` tells more. First flight: jink demo";
 
 int run(int argc, char** argv, const std::function<std::vector<Subcommand>(const Parser&)>& add) {
   CLI::App jink("jink plans collision-free paths for a drone among moving obstacles, and flies them.", "jink");

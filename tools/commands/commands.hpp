@@ -43,5 +43,6 @@ cli::Subcommand add_fly(const cli::Parser& jink);
 cli::Subcommand add_doctor(const cli::Parser& jink);
 cli::Subcommand add_report(const cli::Parser& jink);
 cli::Subcommand add_export(const cli::Parser& jink);
+cli::Subcommand add_demo(const cli::Parser& jink);
 
 }  // namespace jink::tools::commands
