@@ -7,6 +7,8 @@
 #     docs        tools/docs.sh
 #     style       clang-format and clang-tidy
 #     bench       tools/bench.sh
+#     package     tools/package.sh
+#     lintian     tests/package/check_package.py
 #     sanitizers  tools/fuzz.sh and the preset asan
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,6 +31,8 @@ for group in "$@"; do
   docs) packages+=(doxygen) ;;
   style) packages+=(git clang-format-14 clang-tidy-14) ;;
   bench) packages+=(libbenchmark-dev) ;;
+  package) packages+=(dpkg-dev file) ;;
+  lintian) packages+=(lintian) ;;
   sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
   *) echo "setup: unknown group of packages: $group" >&2; exit 2 ;;
   esac

@@ -10,7 +10,7 @@ import re
 import sys
 
 MOST = 100  # characters in a line
-FOLDERS = ("planner", "config", "bridge", "sim", "tools", "tests", "docs", "cmake", ".ci")
+FOLDERS = ("planner", "config", "bridge", "sim", "tools", "tests", "docs", "cmake", "examples", ".ci")
 PATH = re.compile(r"[\w.*-]+(?:/[\w.*-]+)*/?")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)|(?:src|href)=\"([^\"]+)\"")
 
