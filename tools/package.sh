@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and packs the Debian packages jink, jink-lab and libjink-dev: build/package/*.deb.
-# tests/package/check_package.sh tries them.
+# tests/package/check_package.py tries them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh lab package
