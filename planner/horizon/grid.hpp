@@ -18,6 +18,13 @@ inline constexpr int kFarthestCell = 1 << 19;
   return (part(cell.x()) << 42U) | (part(cell.y()) << 21U) | part(cell.z());
 }
 
+/// How many cells a cell and its neighbours are.
+inline constexpr int kGridSteps = 27;
+/// From a cell to one of them, 0 <= n < kGridSteps.
+[[nodiscard]] inline Eigen::Vector3i grid_step(int n) {
+  return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+}
+
 /// Nodes by the estimate of the whole way over them, the least first; of equal ones the first in number.
 class OpenList {
  public:

@@ -72,9 +72,8 @@ void GridSearch::visit(int index, const Standing& standing) {
   }
   const Vec3 here = at(nodes_[i].place);
   const double range = query_.wanted - query_.least;
-  for (int code = 0; code < 27; ++code) {
-    const Eigen::Vector3i step(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
-    const int other = node_at(nodes_[i].place + step, standing);
+  for (int n = 0; n < kGridSteps; ++n) {
+    const int other = node_at(nodes_[i].place + grid_step(n), standing);
     Node& next = nodes_[static_cast<std::size_t>(other)];
     if (next.done) continue;
     const Node& node = nodes_[i];

@@ -342,9 +342,14 @@ std::vector<Vec3> Guide::pulled_tight(std::vector<Vec3> way, const PathRequest& 
   return tight;
 }
 
+// Between its middle and what stands, where a way counts as open.
+double Guide::kept_open(const PathRequest& request) const {
+  return request.vehicle.radius + std::max(0.0, settings_.guide_margin - kNarrower);
+}
+
 // The first leg begins where the vehicle is, wherever that is.
 bool Guide::is_open(std::span<const Vec3> way, const PathRequest& request) const {
-  const double kept = request.vehicle.radius + std::max(0.0, settings_.guide_margin - kNarrower);
+  const double kept = kept_open(request);
   for (std::size_t i = 1; i < way.size(); ++i) {
     const double least = i == 1 ? std::min(kept, standing_.distance(way[0], kept)) : kept;
     if (!standing_.is_clear(way[i - 1], way[i], least)) return false;
@@ -354,7 +359,7 @@ bool Guide::is_open(std::span<const Vec3> way, const PathRequest& request) const
 
 // The way to where one waits for it to be opened.
 std::vector<Vec3> Guide::up_to_closed(const PathRequest& request) const {
-  const double kept = request.vehicle.radius + std::max(0.0, settings_.guide_margin - kNarrower);
+  const double kept = kept_open(request);
   const double length = length_of(way_);
   double open = 0.0;
   // The vehicle may be nearer to something where it is.

@@ -78,6 +78,7 @@ class Guide {
   void centre(std::vector<Vec3>& way, double enough) const;
   [[nodiscard]] std::vector<Vec3> pulled_tight(std::vector<Vec3> way, const PathRequest& request,
                                                std::span<const GridQuery::Column> closed) const;
+  [[nodiscard]] double kept_open(const PathRequest& request) const;
   [[nodiscard]] bool is_open(std::span<const Vec3> way, const PathRequest& request) const;
   bool pass(const Vec3& position);
   [[nodiscard]] double room_at(const Vec3& place, double enough, const base::Box& volume) const;

@@ -80,29 +80,18 @@ bool GuidedPlanner::is_behind(const verify::Plan& plan, const WayInTime& way, co
   return way.arrival + kRegret < on.arrival || (way.stays && !on.stays);
 }
 
-// To where the way waits first, or to where it did before if there is none now. Nothing where it does not wait within
-// the horizon, or no free plan leads there.
-std::optional<verify::Plan> GuidedPlanner::plan_aside(const WayInTime& way, PathRequest& request, const Call& call) {
-  const bool arrives = way.arrival < base::kInfinity;
-  if (way.stays || arrives) {
-    aside_.clear();
-    bool waits = false;
-    for (std::size_t i = 0; i < way.path.size() && !waits; ++i) {
-      if (way.path[i].t > planner_.settings().horizon()) break;
-      aside_.push_back(way.path[i].position);
-      const bool ends = i + 1 == way.path.size();
-      waits = ends ? !arrives : way.path[i + 1].position == aside_.back() && way.path[i + 1].t > way.path[i].t + kWait;
-    }
-    if (!waits) aside_.clear();
+// The way to where a way in time waits first, within the horizon; none where it does not wait.
+std::vector<Vec3> GuidedPlanner::up_to_wait(const WayInTime& way) const {
+  std::vector<Vec3> places;
+  const double horizon = planner_.settings().horizon();
+  for (std::size_t i = 0; i < way.path.size() && way.path[i].t <= horizon; ++i) {
+    places.push_back(way.path[i].position);
+    const bool ends = i + 1 == way.path.size();
+    const bool waits = ends ? way.arrival == base::kInfinity
+                            : way.path[i + 1].position == places.back() && way.path[i + 1].t > way.path[i].t + kWait;
+    if (waits) return places;
   }
-  if (aside_.empty()) return std::nullopt;
-  PathRequest aside = request;
-  aside.way = aside_;
-  aside.target = aside_.back();
-  verify::Plan plan = planner_.plan(aside, call.previous, call.seed, call.number, call.budget, call.pool);
-  if (!plan.verification.free()) return std::nullopt;
-  request = std::move(aside);
-  return plan;
+  return {};
 }
 
 verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
@@ -111,11 +100,21 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
   const PathRequest given = request;
   guide_.lead(request, now, map);
   around_ = surround(request);
-  const Call call{previous, seed, number, budget, pool};
   const base::TimedPoint here{0.0, request.position, request.velocity, Vec3::Zero()};
+  // To where the way waits, or to where it did before if there is none now; nothing where no free plan leads there.
+  const auto plan_aside = [&](const WayInTime& in_time) -> std::optional<verify::Plan> {
+    if (in_time.stays || in_time.arrival < base::kInfinity) aside_ = up_to_wait(in_time);
+    if (aside_.empty()) return std::nullopt;
+    PathRequest aside = request;
+    aside.way = aside_;
+    aside.target = aside_.back();
+    verify::Plan plan = planner_.plan(aside, previous, seed, number, budget, pool);
+    if (!plan.verification.free()) return std::nullopt;
+    request = std::move(aside);
+    return plan;
+  };
   if (!aside_.empty() && is_valid(request)) {
-    if (std::optional<verify::Plan> plan = plan_aside(way_in_time(request, here), request, call))
-      return *std::move(plan);
+    if (std::optional<verify::Plan> plan = plan_aside(way_in_time(request, here))) return *std::move(plan);
   }
   aside_.clear();
   verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
@@ -155,7 +154,7 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     guide_.take(*taken);
     blocked_since_.reset();
   } else if (const WayInTime in_time = way_in_time(request, here); is_behind(best, in_time, request)) {
-    if (std::optional<verify::Plan> plan = plan_aside(in_time, request, call)) {
+    if (std::optional<verify::Plan> plan = plan_aside(in_time)) {
       evaluations += plan->evaluations;
       best = *std::move(plan);
     } else {

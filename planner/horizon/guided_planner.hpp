@@ -46,16 +46,9 @@ class GuidedPlanner {
   };
   [[nodiscard]] Surroundings surround(PathRequest& request) const;
 
-  /// What plan() was asked for, beside the request.
-  struct Call {
-    const base::TimedPath& previous;
-    std::uint64_t seed, number;
-    const base::Budget& budget;
-    base::WorkerPool& pool;
-  };
   [[nodiscard]] WayInTime way_in_time(const PathRequest& request, const base::TimedPoint& from);
   [[nodiscard]] bool is_behind(const verify::Plan& plan, const WayInTime& way, const PathRequest& request);
-  std::optional<verify::Plan> plan_aside(const WayInTime& way, PathRequest& request, const Call& call);
+  [[nodiscard]] std::vector<Vec3> up_to_wait(const WayInTime& way) const;
 
   HorizonPlanner& planner_;
   Guide guide_;

@@ -43,7 +43,6 @@ void SafeIntervalSearch::place_obstacles(const PathRequest& request, double begi
 }
 
 SafeIntervalSearch::Instants SafeIntervalSearch::free_at(const Vec3& position, const PathRequest& request) {
-  constexpr Instants kAll = ~Instants{0};
   if (!request.volume.contains(position)) return 0;
   const double beside = request.vehicle.radius + request.margin_beside_standing();
   if (standing_.distance(position, beside) < beside) return 0;
@@ -59,7 +58,7 @@ SafeIntervalSearch::Instants SafeIntervalSearch::free_at(const Vec3& position, c
       taken |= Instants{1} << i;
     }
   }
-  return kAll & ~taken;
+  return ~taken;
 }
 
 std::size_t SafeIntervalSearch::place_at(const Eigen::Vector3i& cell, const PathRequest& request) {
@@ -93,9 +92,8 @@ double SafeIntervalSearch::time_over(const Vec3& way) const {
 // The vehicle is in the one place until halfway, and in the other from then on.
 void SafeIntervalSearch::leave(std::size_t index, const PathRequest& request) {
   const Place from = places_[states_[index].place];
-  for (int code = 0; code < 27; ++code) {
-    const Eigen::Vector3i step(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
-    const Place& to = places_[place_at(from.cell + step, request)];
+  for (int n = 0; n < kGridSteps; ++n) {
+    const Place& to = places_[place_at(from.cell + grid_step(n), request)];
     const double takes = time_over(to.position - from.position);
     const State& here = states_[index];
     for (std::size_t i = to.first_state; i < to.last_state; ++i) {

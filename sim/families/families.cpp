@@ -143,24 +143,10 @@ struct Family {
   bool on_request = false;
 };
 
-template <int count>
-void build_mader_of(config::Scenario& scenario, planner::base::RandomStream& random) {
-  build_mader(scenario, random, count);
-}
-
-template <int count>
-void build_sando_of(config::Scenario& scenario, planner::base::RandomStream& random) {
-  build_sando(scenario, random, count);
-}
-
-template <int count>
-void build_sando_launched_of(config::Scenario& scenario, planner::base::RandomStream& random) {
-  build_sando_launched(scenario, random, count);
-}
-
-template <int count>
-void build_fcp_of(config::Scenario& scenario, planner::base::RandomStream& random) {
-  build_fcp(scenario, random, count);
+/// One of so many obstacles.
+template <auto build, int count>
+void build_of(config::Scenario& scenario, planner::base::RandomStream& random) {
+  build(scenario, random, count);
 }
 
 void build_panther_slow(config::Scenario& scenario, planner::base::RandomStream& random) {
@@ -177,48 +163,49 @@ constexpr std::uint64_t kWindStream = 0x77696e64;  // "wind": a name of its own 
 constexpr double kWindSpeed = 3.0;                 // m/s
 constexpr double kGust = 1.0;                      // m/s, rms of all three axes
 
-constexpr std::array kFamilies = {Family{"crossing", true, build_crossing},
-                                  Family{"head_on", true, build_head_on},
-                                  Family{"overtaking", true, build_overtaking},
-                                  Family{"falling", true, build_falling},
-                                  Family{"gates", true, build_gates},
-                                  Family{"darts", true, build_darts},
-                                  Family{"vertical", true, build_vertical},
-                                  Family{"backward", true, build_backward},
-                                  Family{"walls", false, build_walls},
-                                  Family{"target_occupied", false, build_target_occupied},
-                                  Family{"crowd", false, build_crowd},
-                                  Family{"turning", false, build_turning},
-                                  Family{"cloud", false, build_cloud},
-                                  Family{"late", true, build_late},
-                                  Family{"odd", true, build_odd},
-                                  Family{"daidalus_head_on", true, build_daidalus_head_on},
-                                  Family{"daidalus_crossing", true, build_daidalus_crossing},
-                                  Family{"daidalus_overtaking", true, build_daidalus_overtaking},
-                                  Family{"antipodal", false, build_antipodal},
-                                  Family{"mader_50", false, build_mader_of<50>, false},
-                                  Family{"mader_100", false, build_mader_of<100>, false},
-                                  Family{"mader_250", false, build_mader_of<250>, false},
-                                  Family{"sando_50", false, build_sando_of<50>, false},
-                                  Family{"sando_100", false, build_sando_of<100>, false},
-                                  Family{"sando_200", false, build_sando_of<200>, false},
-                                  Family{"street", false, build_street, true, true},
-                                  Family{"office", false, build_office, true, true},
-                                  Family{"forest", false, build_forest, true, true},
-                                  Family{"truck", true, build_truck, true, true},
-                                  Family{"lift_door", false, build_lift_door, true, true},
-                                  Family{"racks", false, build_racks, true, true},
-                                  Family{"sliding_gate", false, build_sliding_gate, true, true},
-                                  Family{"wires", false, build_wires, true, true},
-                                  Family{"sando_launched_50", false, build_sando_launched_of<50>, false, false, true},
-                                  Family{"sando_launched_100", false, build_sando_launched_of<100>, false, false, true},
-                                  Family{"sando_launched_200", false, build_sando_launched_of<200>, false, false, true},
-                                  Family{"panther_slow", false, build_panther_slow, false, false, true},
-                                  Family{"panther_fast", false, build_panther_fast, false, false, true},
-                                  Family{"fapp_50", false, build_fapp, false, false, true},
-                                  Family{"cerlab_corridor", false, build_cerlab_corridor, false, true, true},
-                                  Family{"fcp_50", false, build_fcp_of<50>, false, false, true},
-                                  Family{"fcp_280", false, build_fcp_of<280>, false, false, true}};
+constexpr std::array kFamilies = {
+    Family{"crossing", true, build_crossing},
+    Family{"head_on", true, build_head_on},
+    Family{"overtaking", true, build_overtaking},
+    Family{"falling", true, build_falling},
+    Family{"gates", true, build_gates},
+    Family{"darts", true, build_darts},
+    Family{"vertical", true, build_vertical},
+    Family{"backward", true, build_backward},
+    Family{"walls", false, build_walls},
+    Family{"target_occupied", false, build_target_occupied},
+    Family{"crowd", false, build_crowd},
+    Family{"turning", false, build_turning},
+    Family{"cloud", false, build_cloud},
+    Family{"late", true, build_late},
+    Family{"odd", true, build_odd},
+    Family{"daidalus_head_on", true, build_daidalus_head_on},
+    Family{"daidalus_crossing", true, build_daidalus_crossing},
+    Family{"daidalus_overtaking", true, build_daidalus_overtaking},
+    Family{"antipodal", false, build_antipodal},
+    Family{"mader_50", false, build_of<build_mader, 50>, false},
+    Family{"mader_100", false, build_of<build_mader, 100>, false},
+    Family{"mader_250", false, build_of<build_mader, 250>, false},
+    Family{"sando_50", false, build_of<build_sando, 50>, false},
+    Family{"sando_100", false, build_of<build_sando, 100>, false},
+    Family{"sando_200", false, build_of<build_sando, 200>, false},
+    Family{"street", false, build_street, true, true},
+    Family{"office", false, build_office, true, true},
+    Family{"forest", false, build_forest, true, true},
+    Family{"truck", true, build_truck, true, true},
+    Family{"lift_door", false, build_lift_door, true, true},
+    Family{"racks", false, build_racks, true, true},
+    Family{"sliding_gate", false, build_sliding_gate, true, true},
+    Family{"wires", false, build_wires, true, true},
+    Family{"sando_launched_50", false, build_of<build_sando_launched, 50>, false, false, true},
+    Family{"sando_launched_100", false, build_of<build_sando_launched, 100>, false, false, true},
+    Family{"sando_launched_200", false, build_of<build_sando_launched, 200>, false, false, true},
+    Family{"panther_slow", false, build_panther_slow, false, false, true},
+    Family{"panther_fast", false, build_panther_fast, false, false, true},
+    Family{"fapp_50", false, build_fapp, false, false, true},
+    Family{"cerlab_corridor", false, build_cerlab_corridor, false, true, true},
+    Family{"fcp_50", false, build_of<build_fcp, 50>, false, false, true},
+    Family{"fcp_280", false, build_of<build_fcp, 280>, false, false, true}};
 
 template <bool on_request>
 constexpr auto kNames = [] {
