@@ -263,7 +263,8 @@ void Planning::retreat(double now, Intake& intake, const MotionControl& motion, 
   std::vector<planner::base::Track> standing;
   job.map.append_to(standing);
   request.standing = standing;
-  const std::optional<Vec3> refuge = retreat_.choose(now, request, flown, std::move(predictions));
+  const std::optional<Vec3> refuge =
+      retreat_.choose(now, request, flown, std::move(predictions), intake.table().error_laws());
   request.standing = {};
   reporter_.retreats(now, refuge, retreat_.risk());
   if (!refuge) return;

@@ -57,13 +57,13 @@ planner::base::TimedPath Retreat::motion_to(const planner::horizon::PathRequest&
 }
 
 void Retreat::look_for_refuge(const planner::horizon::PathRequest& request, double least,
-                              std::span<const prediction::Prediction> predictions) {
+                              std::span<const prediction::Prediction> predictions, const prediction::LawsByKind& laws) {
   const double stopping = request.velocity.norm() / (2.0 * problem_.settings().braking);  // s, at half the speed
   for (const Vec3& place : places_about(request.position + stopping * request.velocity)) {
     if (!request.volume.contains(place)) continue;
     const planner::base::TimedPath path = motion_to(request, place);
     const double bar = least - kAlike;
-    const double risk = prediction::contact_risk(path, predictions, request.vehicle.radius, kStay, {}, bar);
+    const double risk = prediction::contact_risk(path, predictions, laws, request.vehicle.radius, kStay, {}, bar);
     if (risk >= bar || !planner::horizon::verify_until(path, request, kStay).free()) continue;
     least = risk;
     refuge_ = place;
@@ -74,7 +74,8 @@ void Retreat::look_for_refuge(const planner::horizon::PathRequest& request, doub
 
 std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequest& request,
                                     const planner::base::TimedPath& flown,
-                                    std::vector<prediction::Prediction> predictions) {
+                                    std::vector<prediction::Prediction> predictions,
+                                    const prediction::LawsByKind& laws) {
   std::erase_if(predictions, [&](const prediction::Prediction& prediction) {
     return 0.5 * prediction.acceleration_sigma * kSeen * kSeen < request.margin;
   });
@@ -87,7 +88,7 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
   });
   const double radius = request.vehicle.radius;
   const auto risk_of = [&](const planner::base::TimedPath& path, double until, double evasion) {
-    return prediction::contact_risk(path, predictions, radius, until, {kReaction, evasion});
+    return prediction::contact_risk(path, predictions, laws, radius, until, {kReaction, evasion});
   };
   const double evasion = kEvading * problem_.settings().planned_acceleration(request.vehicle.max_acceleration);
   risk_ = risk_of(flown, kLookedAhead, evasion);
@@ -102,7 +103,7 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
     const bool again = std::exchange(risky_, risk_ > kMost);
     if (risk_ <= (again ? kMost : kFar) || now < goes_on_until_) return std::nullopt;
     since_ = entry_risky_at_ = now;
-    look_for_refuge(request, kBetter * risk_of(flown, kStay, 0.0), predictions);
+    look_for_refuge(request, kBetter * risk_of(flown, kStay, 0.0), predictions, laws);
     return refuge_;
   }
   const bool too_long = now - since_ > kLongest;
@@ -113,7 +114,7 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
     refuge_.reset();
   } else if (risk_ > kMost) {
     const double least = chosen_ ? kBetter * risk_of(motion_to(request, *refuge_), kStay, 0.0) : 1.0 + kAlike;
-    look_for_refuge(request, least, predictions);
+    look_for_refuge(request, least, predictions, laws);
   }
   return refuge_;
 }

@@ -19,20 +19,22 @@ namespace jink::bridge::companion {
 /// thread-safe.
 class Retreat {
  public:
-  static constexpr double kRange = 12.0;   ///< m, of what is looked at
-  static constexpr double kSeen = 0.5;     ///< s, after which something unforeseen has been seen and is evaded
-  static constexpr double kMost = 0.02;    ///< probability to be hit, above which what is flown is given up
-  static constexpr double kFar = 0.1;      ///< above which at once; else the next plan may mend it
-  static constexpr double kLess = 0.005;   ///< below which the vehicle goes on
-  static constexpr double kLongest = 8.0;  ///< s, for which it waits for that; then it goes on for as long
+  static constexpr double kRange = 12.0;    ///< m, of what is looked at
+  static constexpr double kSeen = 0.5;      ///< s, after which something unforeseen has been seen and is evaded
+  static constexpr double kMost = 0.005;    ///< probability to be hit, above which what is flown is given up
+  static constexpr double kFar = 0.025;     ///< above which at once; else the next plan may mend it
+  static constexpr double kLess = 0.00125;  ///< below which the vehicle goes on
+  static constexpr double kLongest = 8.0;   ///< s, for which it waits for that; then it goes on for as long
 
   explicit Retreat(const planner::base::HorizonSettings& settings) : problem_(settings.for_emergencies()) {}
 
   /// Where a plan is to lead to instead of request.target; none: to that. `flown`: what is followed at present, from
   /// the request's state at its time 0 on; of the request's obstacles only what stands is looked at. `predictions` are
-  /// valid at time 0 too. O(places · (predictions + steps)) where a refuge is looked for, O(predictions) else.
+  /// valid at time 0 too, with their laws. O(places · (predictions + steps)) where a refuge is looked for,
+  /// O(predictions) else.
   std::optional<Vec3> choose(double now, const planner::horizon::PathRequest& request,
-                             const planner::base::TimedPath& flown, std::vector<prediction::Prediction> predictions);
+                             const planner::base::TimedPath& flown, std::vector<prediction::Prediction> predictions,
+                             const prediction::LawsByKind& laws);
   /// What the last call gave.
   [[nodiscard]] const std::optional<Vec3>& refuge() const { return refuge_; }
   /// The autopilot's estimate jumped by that: a refuge is where it was.
@@ -48,7 +50,7 @@ class Retreat {
   [[nodiscard]] planner::base::TimedPath motion_to(const planner::horizon::PathRequest& request, const Vec3& target);
   /// Takes another refuge where one is better than `least`, a probability to be hit.
   void look_for_refuge(const planner::horizon::PathRequest& request, double least,
-                       std::span<const prediction::Prediction> predictions);
+                       std::span<const prediction::Prediction> predictions, const prediction::LawsByKind& laws);
 
   planner::horizon::PathProblem problem_;
   bool begun_ = false;

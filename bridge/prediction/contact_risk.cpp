@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "planner/base/solid.hpp"
 
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double kStep = 0.1;  // s
 constexpr std::size_t kMostInstants = 32;
-constexpr double kFarSigmas = 6.0;  // as far away as no risk
 
 /// How far its surface is from its centre towards a place `away` from it, no less than that.
 double extent(const Prediction& prediction, const Vec3& away, double distance, double t) {
@@ -27,25 +25,8 @@ double extent(const Prediction& prediction, const Vec3& away, double distance, d
 
 }  // namespace
 
-double contact_probability(double distance, double radius, double sigma) {
-  if (radius <= 0.0) return 0.0;
-  if (!(sigma > 1e-9)) return distance < radius ? 1.0 : 0.0;
-  const double near = (radius - distance) / sigma;
-  if (near < -kFarSigmas) return 0.0;
-  const double far = (radius + distance) / sigma;
-  const auto erf = [](double x) { return std::erf(x / std::numbers::sqrt2); };
-  const auto bell = [](double x) { return std::exp(-0.5 * x * x); };
-  if (distance < 1e-3 * sigma) {
-    const double x = radius / sigma;
-    return erf(x) - std::sqrt(2.0 / std::numbers::pi) * x * bell(x);
-  }
-  const double inside = 0.5 * (erf(far) + erf(near));
-  return std::clamp(inside - sigma / (distance * std::sqrt(2.0 * std::numbers::pi)) * (bell(near) - bell(far)), 0.0,
-                    1.0);
-}
-
-double contact_risk(const planner::base::TimedPath& path, std::span<const Prediction> predictions, double radius,
-                    double until, const Evasion& evasion, double enough) {
+double contact_risk(const planner::base::TimedPath& path, std::span<const Prediction> predictions,
+                    const LawsByKind& laws, double radius, double until, const Evasion& evasion, double enough) {
   std::array<Vec3, kMostInstants> places;
   std::array<double, kMostInstants> credits{};
   std::size_t instants = 0;
@@ -57,6 +38,7 @@ double contact_risk(const planner::base::TimedPath& path, std::span<const Predic
   }
   double none = 1.0;
   for (const Prediction& prediction : predictions) {
+    const ErrorLaws& law = laws[prediction.motion.index()];
     double most = 0.0;
     for (std::size_t n = 0; n < instants; ++n) {
       const double t = static_cast<double>(n) * kStep;
@@ -64,7 +46,7 @@ double contact_risk(const planner::base::TimedPath& path, std::span<const Predic
       const Vec3 away = places[n] - prediction.position(t);
       const double distance = away.norm();
       const double touching = extent(prediction, away, distance, t) + radius - credits[n];
-      most = std::max(most, contact_probability(distance, touching, prediction.sigma(t)));
+      most = std::max(most, law.at(t).contact_probability(distance, touching, prediction.sigma(t)));
     }
     none *= 1.0 - most;
     if (1.0 - none >= enough) break;

@@ -9,10 +9,6 @@
 
 namespace jink::bridge::prediction {
 
-/// Probability that a point whose distribution is normal, of standard deviation `sigma` along each axis about a place
-/// `distance` away, is within `radius`; 0 or 1 where sigma is 0. All in m.
-[[nodiscard]] double contact_probability(double distance, double radius, double sigma);
-
 /// What a vehicle can do about what it has not foreseen.
 struct Evasion {
   double reaction = 0.0;      ///< s, from the path's beginning, before it can do something else
@@ -21,9 +17,11 @@ struct Evasion {
 
 /// Probability that one of them touches a vehicle of that radius, m, on its path from its time 0 to `until`, s: for
 /// each, that of its worst instant, independent of the others. By ½ a t² after the reaction the vehicle can be
-/// elsewhere, as one that sees it come. The predictions are valid at the path's time 0. Where it is `enough` or more
-/// than that, something between that and it. O(predictions · until).
+/// elsewhere, as one that sees it come. How far they may be from where they are predicted follows `laws`. The
+/// predictions are valid at the path's time 0. Where it is `enough` or more than that, something between that and it.
+/// O(predictions · until).
 [[nodiscard]] double contact_risk(const planner::base::TimedPath& path, std::span<const Prediction> predictions,
-                                  double radius, double until, const Evasion& evasion, double enough = 1.0);
+                                  const LawsByKind& laws, double radius, double until, const Evasion& evasion,
+                                  double enough = 1.0);
 
 }  // namespace jink::bridge::prediction

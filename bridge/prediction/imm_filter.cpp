@@ -14,6 +14,7 @@ constexpr double kSteadyNoise = 0.02;       // m²/s³, of the steady model's ac
 constexpr double kTurningNoise = 12.0;      // m²/s⁵, of the turning model's jerk
 constexpr double kTurningSpread = 2.0;      // m/s², of the acceleration that a turn may begin with
 constexpr double kSojourn = 1.5;            // s, that an obstacle stays with a model on average
+constexpr double kSteadyAtFirst = 0.9;      // probability that a new track does not turn: noise looks like a turn then
 constexpr double kGate = 45.0;              // squared Mahalanobis distance that noise has once in ten million
 constexpr double kLeastProbability = 0.02;  // of a model
 constexpr double kLeastSigma = 0.01;        // m, m/s
@@ -56,6 +57,8 @@ void ImmFilter::begin(const planner::base::Track& measured, const Noise& noise) 
     model.covariance(1, 1) = noise.velocity_variance;
   }
   models_[1].covariance(2, 2) = kTurningSpread * kTurningSpread;
+  models_[0].probability = kSteadyAtFirst;
+  models_[1].probability = 1.0 - kSteadyAtFirst;
   begun_ = true;
 }
 

@@ -30,7 +30,7 @@ class ImmFilter {
   struct Model {
     Matrix3 state = Matrix3::Zero();       ///< rows: position, velocity, acceleration; a column per axis
     Matrix3 covariance = Matrix3::Zero();  ///< of position, velocity and acceleration, for each axis
-    double probability = 0.5;
+    double probability = 0.0;
   };
   struct Noise {
     double position_variance = 0.0, velocity_variance = 0.0;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "bridge/prediction/error_law.hpp"
 #include "bridge/prediction/learned_motion.hpp"
 #include "planner/base/types.hpp"
 
@@ -30,28 +31,38 @@ struct Prediction {
   [[nodiscard]] double sigma(double t) const;
 };
 
+/// What a flight has taught of predictions, by their kind: Prediction::motion.index().
+using LawsByKind = std::array<ErrorLaws, std::variant_size_v<decltype(Prediction::motion)>>;
+
 /// Learns Prediction::acceleration_sigma of one track: what was predicted is kept for a second and held against what
-/// was measured then, as an acceleration that was not foreseen. Of a new track nothing is known but that it may stop or
+/// was measured then, as an acceleration that was not foreseen. It is kept until it has been held against what came at
+/// the last of ErrorLaws::kLeads too, which teaches the laws. Of a new track nothing is known but that it may stop or
 /// turn (kTurning). A swing that has just been learned is as doubtful as what was predicted before, until it has shown
 /// for half a second that it is better. Not thread-safe; O(kMost) for each measurement, allocates nothing.
 class PredictionError {
  public:
   static constexpr double kTurning = 0.7;  ///< s, in which a new track may have lost its velocity
 
-  /// What was measured at t, with its sigma, and what is predicted from then on.
-  void observe(double t, const planner::base::Track& measured, const Prediction& predicted);
+  /// What was measured at t, with its sigma, and what is predicted since, from predicted.age later on.
+  void observe(double t, const planner::base::Track& measured, const Prediction& predicted, LawsByKind& laws);
   [[nodiscard]] double acceleration_sigma() const;
   /// What was seen has more weight in that than what is assumed of a new track.
   [[nodiscard]] bool watched() const;
 
  private:
-  static constexpr std::size_t kMost = 10;
+  static constexpr std::size_t kMost = 24;
   struct Kept {
-    double t = 0.0;
+    double t = 0.0;  // the prediction's time 0
     Prediction prediction;
+    std::size_t judged = 0;      // at how many of the leads
+    Vec3 errors = Vec3::Zero();  // about the next of them: their sum, m,
+    double measurements = 0.0;   // and number
   };
+  void judge(double t, const planner::base::Track& measured, LawsByKind& laws);
+
   std::array<Kept, kMost> kept_;  // the newest first
   std::size_t size_ = 0;
+  std::size_t alike_ = 0;  // of them, that swing or do not, as what was predicted last
   bool begun_ = false;
   bool swings_ = false;                  // what was predicted last
   double errors_ = 0.0, weights_ = 0.0;  // (m/s²)², in units of the lead's fourth power

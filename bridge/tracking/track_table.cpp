@@ -160,7 +160,7 @@ void TrackTable::learn(const TrackMessage& message, double t) {
     }
     if (!entry.learned) continue;
     entry.learned->observe(t, measured, entry.track.value, measured.id, experience_);
-    entry.error->observe(t, measured, predict(entry, t, kTrust));
+    entry.error->observe(t, measured, predict(entry, message.received, kTrust), laws_);
     if (entry.learned->fit_due() <= t) due.push_back({distance_squared, &measured, &entry});
   }
   std::stable_sort(due.begin(), due.end(),

@@ -65,6 +65,8 @@ class TrackTable {
   /// `now` on, to the best of what is known.
   [[nodiscard]] std::vector<prediction::Prediction> predictions(double now, double trust, const Vec3& place,
                                                                 double range) const;
+  /// How far off such predictions have been in this flight.
+  [[nodiscard]] const prediction::LawsByKind& error_laws() const { return laws_; }
 
   /// Whether a track that the vehicle could meet within kMeeting at `speed` moves in a way that is not understood yet
   /// (MotionLearner::unexplained). As of the last messages.
@@ -138,6 +140,7 @@ class TrackTable {
   std::map<Key, Entry> entries_;
   std::optional<Vec3> vehicle_;  // where it was last
   prediction::Experience experience_;
+  prediction::LawsByKind laws_;
   std::size_t learned_ = 0;  // tracks
 };
 

@@ -39,7 +39,7 @@ struct Hovers {
   }
   std::optional<Vec3> choose(const std::vector<Prediction>& predictions) {
     now += kPeriod;
-    return retreat.choose(now, request, flown, predictions);
+    return retreat.choose(now, request, flown, predictions, {});
   }
   std::optional<Vec3> choose_for(double seconds, const std::vector<Prediction>& predictions) {
     std::optional<Vec3> refuge;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "planner/base/random.hpp"
+#include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::prediction {
 namespace {
@@ -84,6 +85,27 @@ TEST(ImmFilter, KnowsSteadyMotionMuchBetterThanItIsMeasured) {
   // What it states is no better than it is.
   EXPECT_LT(errors.stated_position, 1.2);
   EXPECT_LT(errors.stated_velocity, 1.2);
+}
+
+// Noise of a few measurements looks like a turn, and where that leads in a second is far off.
+TEST(ImmFilter, TakesANewTrackToFlyStraight) {
+  constexpr int kTracks = 200;
+  double squares = 0.0;
+  for (std::uint64_t seed = 1; seed <= kTracks; ++seed) {
+    RandomStream random(seed);
+    ImmFilter filter;
+    Track track;
+    double t = 0.0;
+    for (int n = 0; n < 5; ++n, t += kInterval) {
+      track = measured({8.0 * t, 0.0, 0.0}, {8.0, 0.0, 0.0}, random);
+      filter.update(kInterval, track);
+      filter.apply(track);
+    }
+    const double now = t - kInterval;
+    const Vec3 ahead = planner::geometry::predict_position(track, 1.0, 0.7);
+    squares += (ahead - Vec3(8.0 * (now + 1.0), 0.0, 0.0)).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(squares / kTracks), 0.45);
 }
 
 TEST(ImmFilter, FollowsAMotionThatSwings) {

@@ -21,6 +21,7 @@ struct Judged {
 
   bool noisy;
   PredictionError error;
+  LawsByKind laws;
   ImmFilter filter;
   planner::base::RandomStream random{3, 1};
   double t = 0.0;
@@ -50,7 +51,7 @@ struct Judged {
       predicted.position_sigma = estimate.position_sigma;
       predicted.velocity_sigma = estimate.velocity_sigma;
       predicted.trust = 0.7;
-      error.observe(t, measured, predicted);
+      error.observe(t, measured, predicted, laws);
     }
   }
 };
@@ -101,10 +102,25 @@ TEST(PredictionError, ALearnedSwingIsDoubtedUntilItHasShownThatItIsBetter) {
   learned.motion = HarmonicMotion{};  // stays at the origin
   Track measured;
   measured.position_sigma = 0.1;
-  judged.error.observe(1.05, measured, learned);
+  judged.error.observe(1.05, measured, learned, judged.laws);
   EXPECT_NEAR(judged.error.acceleration_sigma(), before, 0.1);
-  for (double t = 1.1; t < 2.0; t += kSensed) judged.error.observe(t, measured, learned);
+  for (double t = 1.1; t < 2.0; t += kSensed) judged.error.observe(t, measured, learned, judged.laws);
   EXPECT_LT(judged.error.acceleration_sigma(), 0.3 * before);
+}
+
+TEST(PredictionError, WhatCameIsHeldAgainstWhatWasPredictedAtEachLead) {
+  Judged judged(/*with_noise=*/true);
+  const LawsByKind before;
+  judged.watch(straight, 1.8);
+  for (std::size_t i = 0; i < ErrorLaws::kLeads.size(); ++i) {
+    const double lead = ErrorLaws::kLeads[i];
+    const bool over = lead < judged.t;
+    EXPECT_EQ(judged.laws[0].at(lead).region(0.9) != before[0].at(lead).region(0.9), over) << lead << " s ahead";
+    EXPECT_EQ(judged.laws[1].at(lead).region(0.9), before[1].at(lead).region(0.9)) << "nothing swings";
+  }
+  judged.watch(straight, 20.0);
+  for (const double lead : ErrorLaws::kLeads)
+    EXPECT_LT(judged.laws[0].at(lead).region(0.99), 0.85 * before[0].at(lead).region(0.99)) << "it goes straight";
 }
 
 TEST(Prediction, IsLessSureTheFartherAhead) {

@@ -31,7 +31,7 @@ void refuge(benchmark::State& state) {
   bridge::companion::Retreat retreat{planner::base::HorizonSettings{}};
   double now = 0.0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(retreat.choose(now, request, stays, movers));
+    benchmark::DoNotOptimize(retreat.choose(now, request, stays, movers, {}));
     now += 0.05;
   }
 }
