@@ -255,12 +255,12 @@ std::string_view missing_security_file(const std::filesystem::path& folder) {
 }
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(
-      read_document(file),
-      {"format",  "name",      "connection", "system_id", "icao_address", "vehicle", "takeoff_height", "min_height",
-       "heights", "waypoints", "arrival",    "geofence",  "map",          "no_fly",  "fence",          "dds",
-       "tracks",  "cloud",     "endings",    "state",     "setpoints",    "intents", "time_limit"},
-      "jink-mission/1");
+  const Map map(read_document(file), {"format",    "name",           "connection", "system_id",        "icao_address",
+                                      "vehicle",   "takeoff_height", "min_height", "heights",          "waypoints",
+                                      "arrival",   "geofence",       "map",        "no_fly",           "fence",
+                                      "dds",       "tracks",         "cloud",      "endings",          "state",
+                                      "setpoints", "intents",        "time_limit", "acceptance_radius"},
+                "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
   mission.connection = read_connection(map.at("connection", "a MAVSDK URL"));
@@ -295,6 +295,7 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   if (const auto tracks = map.find("tracks")) mission.tracks = read_tracks(*tracks);
   if (const auto cloud = map.find("cloud")) mission.cloud = read_cloud(*cloud);
   if (const auto endings = map.find("endings")) mission.endings = read_endings(*endings);
+  mission.acceptance_radius = map.number_or("acceptance_radius", kAcceptance, 0.0);
   mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
   return mission;
 }

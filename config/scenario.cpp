@@ -140,8 +140,8 @@ std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
 
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "start", "target", "time_limit", "vehicle", "world", "sensing", "obstacles", "map",
-                 "no_fly", "vehicles", "wind", "estimate", "faults"},
+                {"format", "name", "start", "target", "acceptance_radius", "time_limit", "vehicle", "world", "sensing",
+                 "obstacles", "map", "no_fly", "vehicles", "wind", "estimate", "faults"},
                 "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
@@ -151,6 +151,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
   NamedVehicle vehicle = read_vehicle(map.at("vehicle", "the name of a vehicle or a map"), file, vehicles);
   scenario.vehicle_name = std::move(vehicle.name);
   scenario.vehicle = vehicle.limits;
+  scenario.acceptance_radius = map.number_or("acceptance_radius", kAcceptance, 0.0);
   scenario.time_limit = map.number_or("time_limit", above(0, 1e6), default_time_limit(scenario));
   if (const auto sensing = map.find("sensing")) scenario.sensing = read_sensing(*sensing);
   // Who has a known world may have nothing else in it.

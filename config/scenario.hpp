@@ -153,7 +153,8 @@ struct Scenario {
   Vec3 start = Vec3::Zero();
   Vec3 target = Vec3::Zero();
   double time_limit = 0.0;
-  std::string vehicle_name;  ///< "inline" where the file gives a map
+  double acceptance_radius = 0.0;  ///< m, about the target, in which it is reached at any speed; 0: at it, slow
+  std::string vehicle_name;        ///< "inline" where the file gives a map
   planner::base::VehicleLimits vehicle;
   std::optional<planner::base::Box> world;
   Sensing sensing;

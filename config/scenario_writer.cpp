@@ -169,6 +169,7 @@ std::string to_yaml(const Scenario& scenario) {
   line("name", in_quotes(scenario.name));
   line("start", vector_text(scenario.start));
   line("target", vector_text(scenario.target));
+  if (scenario.acceptance_radius > 0.0) line("acceptance_radius", number_text(scenario.acceptance_radius));
   line("time_limit", number_text(scenario.time_limit));
   line("vehicle", vehicle_text(scenario.vehicle_name, scenario.vehicle));
   if (scenario.world) line("world", FlowMap().add("min", scenario.world->min).add("max", scenario.world->max).text());

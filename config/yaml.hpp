@@ -98,6 +98,8 @@ Value read_document(const std::filesystem::path& file);
 
 /// m: of every coordinate. What is beyond is in the wrong unit.
 inline constexpr Range kCoordinate = within(1e5);
+/// m: of an acceptance radius.
+inline constexpr Range kAcceptance = above(0, 100);
 
 /// A box given by `min` and `max`, both required, min < max on each axis.
 planner::base::Box read_box(const Value& value, const Range& range);

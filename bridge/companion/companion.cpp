@@ -52,7 +52,7 @@ Companion::Companion(const config::Mission& mission, const config::Settings& set
       sight_(mission_, settings_, parts.clouds, parts.clock),
       motion_(mission_, settings_, parts.link, parts.clock, reporter_),
       planning_(mission_, settings_, parts.planner, sight_, reporter_),
-      route_(mission_.waypoints) {}
+      route_(mission_.waypoints, mission_.acceptance_radius) {}
 
 bool Companion::step(double now) {
   const double dt = std::max(0.0, now - last_step_.value_or(now));

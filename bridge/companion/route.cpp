@@ -11,7 +11,8 @@ bool Route::pass(const Vec3& position) {
 }
 
 bool Route::arrived(const Vec3& position, const Vec3& velocity) const {
-  return next_ + 1 == waypoints_.size() && at(target(), position, velocity);
+  if (next_ + 1 != waypoints_.size()) return false;
+  return (position - target()).norm() < acceptance_ || at(target(), position, velocity);
 }
 
 bool Route::stuck(double now, const Vec3& position) {

@@ -18,7 +18,9 @@ class Route {
   static constexpr double kArrivalSpeed = 0.5;  ///< m/s
   static constexpr double kPassing = 0.7;       ///< m, to a waypoint on the way
 
-  explicit Route(std::vector<Vec3> waypoints) : waypoints_(std::move(waypoints)) {}
+  /// `acceptance`: config::Mission::acceptance_radius.
+  explicit Route(std::vector<Vec3> waypoints, double acceptance = 0.0)
+      : waypoints_(std::move(waypoints)), acceptance_(acceptance) {}
   /// The same waypoints elsewhere.
   void place(std::vector<Vec3> waypoints) { waypoints_ = std::move(waypoints); }
 
@@ -32,7 +34,7 @@ class Route {
   [[nodiscard]] static bool at(const Vec3& place, const Vec3& position, const Vec3& velocity) {
     return (position - place).norm() < kArrival && velocity.norm() < kArrivalSpeed;
   }
-  /// At the last waypoint, slow.
+  /// At the last waypoint, slow; or near enough.
   [[nodiscard]] bool arrived(const Vec3& position, const Vec3& velocity) const;
   /// It was led elsewhere: that it came no nearer says nothing.
   void begin_anew() { progress_.begin_anew(); }
@@ -41,6 +43,7 @@ class Route {
 
  private:
   std::vector<Vec3> waypoints_;
+  double acceptance_;  // m, to the last waypoint
   std::size_t next_ = 0;
   planner::horizon::Progress progress_;  // towards it
 };

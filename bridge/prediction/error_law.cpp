@@ -17,13 +17,13 @@ constexpr double kScale = 0.6;        // of the heavy-tailed law
 
 using Radii = std::array<double, ErrorLaw::kShells>;
 
-Radii outer_radii() {
-  Radii radii;
+constexpr Radii outer_radii() {
+  Radii radii{};
   double radius = kFirst;
   for (double& outer : radii) outer = std::exchange(radius, kGrowth * radius);
   return radii;
 }
-const Radii kOuter = outer_radii();
+constexpr Radii kOuter = outer_radii();
 const ErrorLaw kNow = ErrorLaw::normal();
 
 /// Share of a sphere of radius s that is within `radius` of a point `distance` from its centre.

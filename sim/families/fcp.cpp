@@ -8,19 +8,20 @@
 namespace jink::sim::families {
 namespace {
 
-constexpr double kTick = 0.1;    // s
-constexpr int kTicks = 250;      // of an episode
-constexpr double kMover = 0.1;   // m, radius
-constexpr double kLevel = 0.2;   // of what is random in height, to what is so along
-constexpr double kSpread = 0.5;  // m/s, standard deviation of a velocity
-constexpr double kNoise = 0.22;  // m/s, likewise, of what a velocity is off by in a step
-constexpr double kTurn = 3.0;    // rad, standard deviation of a turn
-constexpr double kTurns = 0.95;  // probability at a switch
-constexpr double kStands = 0.6;  // likewise, until the next
-constexpr double kSlow = 0.3;    // m/s, the least speed of those with a goal
-constexpr double kFast = 0.7;    // m/s, the largest
-constexpr double kSoon = 1.0;    // s, the least time from switch to switch
-constexpr double kLate = 6.0;    // s, the longest
+constexpr double kTick = 0.1;     // s
+constexpr int kTicks = 250;       // of an episode
+constexpr double kMover = 0.1;    // m, radius
+constexpr double kReached = 0.8;  // m, from the goal
+constexpr double kLevel = 0.2;    // of what is random in height, to what is so along
+constexpr double kSpread = 0.5;   // m/s, standard deviation of a velocity
+constexpr double kNoise = 0.22;   // m/s, likewise, of what a velocity is off by in a step
+constexpr double kTurn = 3.0;     // rad, standard deviation of a turn
+constexpr double kTurns = 0.95;   // probability at a switch
+constexpr double kStands = 0.6;   // likewise, until the next
+constexpr double kSlow = 0.3;     // m/s, the least speed of those with a goal
+constexpr double kFast = 0.7;     // m/s, the largest
+constexpr double kSoon = 1.0;     // s, the least time from switch to switch
+constexpr double kLate = 6.0;     // s, the longest
 
 struct Drifter {
   Vec3 position = Vec3::Zero();
@@ -106,12 +107,12 @@ config::WaypointsMotion motion_of(Drifter drifter, RandomStream& random, const p
 // does so until its next switch; the noise is on each step's velocity alone and does not add up; goals and beginnings
 // are uniform in the box; who has a goal has no switches; velocities are reflected at the faces. None begins within
 // kStartClearance of the vehicle.
-// differs: there the goal is reached within 0.8 m, at any speed, and an episode goes on after a contact. The
-// vehicle's acceleration and jerk are the AR.Drone's.
+// differs: there an episode goes on after a contact. The vehicle's acceleration and jerk are the AR.Drone's.
 void build_fcp(config::Scenario& scenario, RandomStream& random, int count) {
   set_limits(scenario, {0.2, 3.0, 0.7, scenario.vehicle.max_acceleration, scenario.vehicle.max_jerk});
   scenario.start = {0, 0, 1};
   scenario.target = {5, 5, 6.4};
+  scenario.acceptance_radius = kReached;
   scenario.time_limit = kTicks * kTick;
   scenario.world = planner::base::Box{{-3, -3, 0}, {7, 7, 8}};
   const planner::base::Box room{scenario.world->min.array() + kMover, scenario.world->max.array() - kMover};

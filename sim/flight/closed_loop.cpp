@@ -43,6 +43,7 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
     mission.map = config::make_map(scenario.map);
   }
   mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
+  mission.acceptance_radius = scenario.acceptance_radius;
   mission.time_limit = scenario.time_limit;
   mission.tracks.sensed_from = scenario.sensing.sensed_from;
   mission.intents = !scenario.vehicles.empty();

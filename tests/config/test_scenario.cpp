@@ -51,6 +51,11 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+TEST(LoadScenario, TheTargetIsReachedAtItUnlessNearIsEnough) {
+  EXPECT_EQ(loaded(kValidScenario).acceptance_radius, 0.0);
+  EXPECT_EQ(loaded(replaced(kValidScenario, "time_limit: 60", "acceptance_radius: 0.8")).acceptance_radius, 0.8);
+}
+
 TEST(LoadScenario, ReadsEveryKey) {
   const Scenario s = loaded(kValidScenario);
   EXPECT_EQ(s.name, "example");
@@ -152,6 +157,7 @@ TEST(LoadScenario, RefusesBadTopLevelKeys) {
       {"target: [20, 0, 1.5]", "target: [26, 0, 1.5]", 4, "target[0]", "26", "outside the world; not in [-5, 25]"},
       {"target: [20, 0, 1.5]", "target: [1e6, 0, 1]", 4, "target[0]", "1e6", "is not in [-100000, 100000]"},
       {"target:", "tagret:", 4, "tagret", "[20, 0, 1.5]", "did you mean 'target'?"},
+      {"time_limit: 60", "acceptance_radius: 101", 5, "acceptance_radius", "101", "is not in (0, 100]"},
       {"time_limit: 60", "time_limit: 0", 5, "time_limit", "0", "is not in (0, 1000000]"},
       {"world: {min: [-5, -10, 0], max: [25, 10, 8]}", "world: {min: [-5, -10, 0], max: [25, -10, 8]}", 7,
        "world.max[1]", "-10", "is not above min, -10; expected a number in (-10, 100000]"},

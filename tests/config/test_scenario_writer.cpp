@@ -53,6 +53,7 @@ TEST(ToYaml, EveryShippedScenarioReadsBack) {
 
 TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
   Scenario scenario = smallest();
+  scenario.acceptance_radius = awkward(8);
   const LinearMotion linear{awkward_vector(1), awkward_vector(2), awkward_vector(3)};
   const BounceMotion bounce{{0.5, 0, 1e-300}, awkward_vector(4), {0, -1, 0}, {1, 1, 1}};
   const SineMotion sine{awkward_vector(5), awkward_vector(6), {0, 1.0 / 3.0, 7}, awkward_vector(7)};

@@ -28,6 +28,7 @@ inline void expect_same(const config::ScenarioVehicle& a, const config::Scenario
 
 inline void expect_same(const config::Scenario& a, const config::Scenario& b) {
   EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.acceptance_radius, b.acceptance_radius);
   EXPECT_EQ(a.time_limit, b.time_limit);
   ASSERT_EQ(a.world.has_value(), b.world.has_value());
   if (a.world) {

@@ -17,6 +17,14 @@ TEST(Route, GoesOnAtAWaypointOnTheWayAndArrivesAtTheLastOne) {
   EXPECT_FALSE(route.arrived({19.8, 0, 2}, {1, 0, 0}));
 }
 
+TEST(Route, AcceptsToHaveComeNearTheLastWaypoint) {
+  Route route({{10, 0, 2}, {20, 0, 2}}, /*acceptance=*/0.8);
+  EXPECT_FALSE(route.arrived({19.5, 0, 2}, {3, 0, 0})) << "the first comes first";
+  EXPECT_TRUE(route.pass({9.5, 0, 2}));
+  EXPECT_FALSE(route.arrived({19.1, 0, 2}, Vec3::Zero()));
+  EXPECT_TRUE(route.arrived({19.3, 0, 2}, {3, 0, 0}));
+}
+
 TEST(Route, IsStuckWhereItComesNoNearer) {
   Route route({{10, 0, 2}, {20, 0, 2}});
   EXPECT_FALSE(route.stuck(1.0, {0, 0, 2}));
