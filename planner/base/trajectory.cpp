@@ -35,4 +35,10 @@ TimedPath remainder(const TimedPath& path, double t) {
   return rest;
 }
 
+TimedPath later(const TimedPath& path, double t) {
+  TimedPath rest = remainder(path, t);
+  for (TimedPoint& point : rest) point.t -= t;
+  return rest;
+}
+
 }  // namespace jink::planner::base

@@ -30,4 +30,7 @@ double path_length(const TimedPath& path);
 /// The part of the path from time t on, with its first point at t exactly. Precondition: not empty.
 TimedPath remainder(const TimedPath& path, double t);
 
+/// The path as it is t seconds later: its remainder(), with times that count from then. Precondition: not empty.
+TimedPath later(const TimedPath& path, double t);
+
 }  // namespace jink::planner::base

@@ -123,8 +123,7 @@ verify::Plan attempt(HorizonPlanner& planner, const OpenLoopRequest& request, st
     const base::TimedPoint next = base::sample(part.path, keep);
     from.position = next.position;
     from.velocity = next.velocity;
-    previous = base::remainder(part.path, keep);
-    for (base::TimedPoint& point : previous) point.t -= keep;
+    previous = base::later(part.path, keep);
   }
   judge(request, planner.settings().step, whole);
   return whole;

@@ -35,6 +35,14 @@ base::Box ball(const Vec3& center, double radius) {
 
 }  // namespace
 
+PathRequest PathRequest::with(const base::HorizonSettings& settings) {
+  PathRequest request;
+  request.margin = settings.margin;
+  request.track_acceleration = settings.track_acceleration;
+  request.acceleration_trust = settings.acceleration_trust;
+  return request;
+}
+
 PathProblem::PathProblem(const base::HorizonSettings& settings)
     : settings_(checked(settings)), lower_(index(3 * settings.waypoints), -1.0), upper_(lower_.size(), 1.0) {
   scene_.waypoints = settings.waypoints;

@@ -36,6 +36,9 @@ struct PathRequest {
   bool visit = false;                            ///< to have been at the target is enough: it need not stay free
   std::vector<Vec3> way{};  ///< corners of a way to the target that a search begins with, the target last; or none
 
+  /// One that keeps the margin of the settings and expects of tracks what they say.
+  [[nodiscard]] static PathRequest with(const base::HorizonSettings& settings);
+
   /// Kept from what stands on top of the radii.
   [[nodiscard]] double margin_beside_standing() const { return std::min(margin, standing_margin); }
 };

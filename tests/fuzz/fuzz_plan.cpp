@@ -409,8 +409,7 @@ void follow(Numbers& n, Case& c, base::WorkerPool& pool) {
   const base::TimedPoint now = base::sample(before.path, t);
   c.request.position = now.position;
   c.request.velocity = now.velocity;
-  c.previous = base::remainder(before.path, t);
-  for (base::TimedPoint& point : c.previous) point.t -= t;
+  c.previous = base::later(before.path, t);
 }
 
 /// The plan before is not what it should be: it begins elsewhere, at another speed, or is no path.

@@ -79,6 +79,15 @@ TEST(Remainder, AfterTheEndIsOneRestingPoint) {
   EXPECT_EQ(rest[0].velocity, Vec3(0, 0, 0));
 }
 
+TEST(Later, IsTheRemainderWithTimesFromThen) {
+  const TimedPath rest = later(corner(), 1.25);
+  ASSERT_EQ(rest.size(), 3U);
+  EXPECT_EQ(rest[0].t, 0.0);
+  EXPECT_EQ(rest[0].position, Vec3(0.5, 0, 1));
+  EXPECT_EQ(rest[1].t, 0.75);
+  EXPECT_EQ(rest[2].t, 2.75);
+}
+
 TEST(Remainder, FollowsTheSamePathAtAnyTime) {
   RandomStream random(4);
   TimedPath path;

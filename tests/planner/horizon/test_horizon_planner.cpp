@@ -290,9 +290,7 @@ TEST(HorizonPlanner, KeepsAPreviousPlanWhereverItIsCut) {
     const base::TimedPoint state = base::sample(first.path, t);
     r.position = state.position;
     r.velocity = state.velocity;
-    base::TimedPath previous = base::remainder(first.path, t);
-    for (base::TimedPoint& point : previous) point.t -= t;
-    EXPECT_TRUE(continues(previous, r, base::HorizonSettings{}.step)) << t;
+    EXPECT_TRUE(continues(base::later(first.path, t), r, base::HorizonSettings{}.step)) << t;
   }
 }
 
@@ -524,8 +522,7 @@ TEST(HorizonPlanner, WhatReachesKeepsTheLimitsOfAnyVehicle) {
       r.position = next.position;
       r.velocity = next.velocity;
       for (base::Track& track : tracks) track.position += later * track.velocity;
-      previous = base::remainder(plan.path, later);
-      for (base::TimedPoint& point : previous) point.t -= later;
+      previous = base::later(plan.path, later);
     }
   }
   EXPECT_GT(reached, 200);

@@ -56,6 +56,17 @@ optimizer::Cost evaluate(const PathProblem& problem, std::span<const double> x) 
   return cost;
 }
 
+TEST(PathRequest, KeepsTheMarginOfTheSettings) {
+  base::HorizonSettings settings;
+  settings.margin = 0.7;
+  settings.track_acceleration = 0.9;
+  settings.acceleration_trust = 1.1;
+  const auto request = PathRequest::with(settings);
+  EXPECT_EQ(request.margin, 0.7);
+  EXPECT_EQ(request.track_acceleration, 0.9);
+  EXPECT_EQ(request.acceleration_trust, 1.1);
+}
+
 TEST(PathProblem, HasThreeVariablesForEachWaypoint) {
   const PathProblem problem{base::HorizonSettings{}};
   EXPECT_EQ(problem.dimension(), 18);

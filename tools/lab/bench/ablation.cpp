@@ -83,14 +83,12 @@ Case case_at(const sim::world::World& world, double share, const planner::base::
   const double t =
       share > 0.0 ? share * way.norm() / cruise + 0.5 * cruise / sim::families::kStraightAcceleration : 0.0;
   Case c;
+  c.request = planner::horizon::PathRequest::with(settings);
   c.request.position = scenario.start + share * way;
   if (share > 0.0) c.request.velocity = cruise * forward;
   c.request.target = scenario.target;
   c.request.volume = world.volume();
   c.request.vehicle = vehicle;
-  c.request.margin = settings.margin;
-  c.request.track_acceleration = settings.track_acceleration;
-  c.request.acceleration_trust = settings.acceleration_trust;
   for (int i = 0; i < world.obstacle_count(); ++i) c.tracks.push_back(world.exact_track(i, t));
   return c;
 }

@@ -83,14 +83,11 @@ std::vector<planner::base::Track> MovingWorld::tracks(double t) const {
 }
 
 planner::horizon::PathRequest MovingWorld::request(const planner::base::HorizonSettings& settings) const {
-  planner::horizon::PathRequest request;
+  auto request = planner::horizon::PathRequest::with(settings);
   request.position = world_.scenario().start;
   request.target = world_.scenario().target;
   request.volume = world_.volume();
   request.vehicle = world_.scenario().vehicle;
-  request.margin = settings.margin;
-  request.track_acceleration = settings.track_acceleration;
-  request.acceleration_trust = settings.acceleration_trust;
   return request;
 }
 

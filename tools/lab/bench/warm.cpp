@@ -43,13 +43,11 @@ struct Moment {
 
   Moment(const sim::world::World& world, const planner::base::HorizonSettings& settings) {
     const config::Scenario& scenario = world.scenario();
+    request = planner::horizon::PathRequest::with(settings);
     request.position = scenario.start;
     request.target = scenario.target;
     request.volume = world.volume();
     request.vehicle = scenario.vehicle;
-    request.margin = settings.margin;
-    request.track_acceleration = settings.track_acceleration;
-    request.acceleration_trust = settings.acceleration_trust;
     look(world);
   }
   void look(const sim::world::World& world) {
