@@ -69,6 +69,7 @@ function(jink_install_libraries)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/jinkConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/jinkConfig.cmake ${PROJECT_BINARY_DIR}/package/jinkConfigVersion.cmake
           DESTINATION ${folder} COMPONENT libjink-dev)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION share/doc/libjink-dev COMPONENT libjink-dev)
   jink_install_documents(libjink-dev)
 endfunction()
 

@@ -12,7 +12,7 @@ import re
 import sys
 
 source = pathlib.Path(sys.argv[1]).resolve()
-TOP = ("planner", "config", "bridge", "sim", "tools", "tests")
+TOP = ("planner", "config", "bridge", "sim", "tools", "tests", "examples")
 # What is looked for; of a header that is not here the compiler says nothing, since the others bring it.
 DECLARES = {
     "Eigen/Core": r"Eigen::",
