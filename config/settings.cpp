@@ -250,6 +250,13 @@ Settings read_file(const std::filesystem::path& file) {
   return settings;
 }
 
+/// dpkg leaves a new version's file beside one that the user has changed and keeps. Empty: there is none.
+std::string where_the_new_one_is(const std::filesystem::path& file) {
+  const std::string newer = file.string() + ".dpkg-dist";
+  std::error_code none;
+  return std::filesystem::exists(newer, none) ? "; this version's own file is " + newer : "";
+}
+
 /// "section.key=value", and where an error says it comes from.
 struct Override {
   std::string source;
@@ -306,7 +313,12 @@ void apply_all(const std::vector<Override>& changes, Settings& settings) {
 }  // namespace
 
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  Settings settings = read_file(file);
+  Settings settings;
+  try {
+    settings = read_file(file);
+  } catch (const ConfigError& error) {
+    throw ConfigError(error.what() + where_the_new_one_is(file));
+  }
   std::vector<Override> changes;
   changes.reserve(overrides.size());
   for (const std::string& argument : overrides) changes.emplace_back(argument);

@@ -39,7 +39,8 @@ struct Settings {
 /// Reads and checks a jink-planner/1 file, then applies `overrides` in order, each "section.key=value" as of `--set`.
 /// Every key is required; unknown ones are errors. Beyond each key's range: a population is no smaller than its number
 /// of slaves, optimizer.wep_min <= wep_max, horizon.step <= time, and the horizon's weights are not all 0. Throws
-/// ConfigError (config/error.hpp) naming file and line, or "--set" and the text.
+/// ConfigError (config/error.hpp) naming file and line, and FILE.dpkg-dist where an upgrade has left that, or "--set"
+/// and the text.
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// One parameter as text: "horizon.margin", "0.35". Numbers read back to the same bits.

@@ -202,6 +202,20 @@ TEST(LoadSettings, RequiresEveryKey) {
   EXPECT_EQ(static_cast<std::size_t>(removed), list_settings(Settings{}).size());
 }
 
+TEST(LoadSettings, SaysWhereAnUpgradeLeftTheNewFile) {
+  const std::string valid = shipped_text();
+  const std::string line = "  keep_ratio: 0.05";
+  std::string old = valid;
+  old.erase(old.find(line), old.find('\n', old.find(line)) + 1 - old.find(line));
+  const Folder folder;
+  const auto file = folder.write("planner.yaml", old);
+  const auto load = [&] { static_cast<void>(load_settings(file)); };
+  EXPECT_EQ(error_of(load).find("dpkg"), std::string::npos);
+  const auto newer = folder.write("planner.yaml.dpkg-dist", valid);
+  expect_contains(error_of(load), "key 'horizon.keep_ratio': missing; expected ");
+  EXPECT_TRUE(error_of(load).ends_with("; this version's own file is " + newer.string())) << error_of(load);
+}
+
 TEST(NumberText, ReadsBackToTheSameBits) {
   for (const double value : {0.0, 0.1, 1.0 / 3.0, 1e-300, 123456789.125, 1e22, -5.0, 20.0, 1e5}) {
     EXPECT_EQ(parse_number(number_text(value)), value);
