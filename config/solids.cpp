@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::config {
 namespace {
 
@@ -19,7 +21,7 @@ Sphere enclose(const BoxShape& shape) {
   return {Vec3::Zero(), 0.5 * shape.edges.norm()};
 }
 Sphere enclose(const CylinderShape& shape) {
-  return {Vec3::Zero(), std::hypot(shape.radius, 0.5 * shape.height)};
+  return {Vec3::Zero(), planner::base::hypotenuse(shape.radius, 0.5 * shape.height)};
 }
 Sphere enclose(const CapsuleShape& shape) {
   return {0.5 * (shape.a + shape.b), 0.5 * (shape.b - shape.a).norm() + shape.radius};

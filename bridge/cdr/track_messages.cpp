@@ -18,6 +18,7 @@
 
 #include "bridge/cdr/input.hpp"
 #include "bridge/frames/conversions.hpp"
+#include "planner/base/portable_math.hpp"
 #include "planner/base/solid.hpp"
 
 namespace jink::bridge::cdr {
@@ -123,7 +124,7 @@ ObjectShape take_shape(CdrInput& input, const Eigen::Matrix3d& axes) {
     const auto x = static_cast<double>(input.take<float>());
     const auto y = static_cast<double>(input.take<float>());
     input.take<float>();
-    const double distance = std::hypot(x, y);
+    const double distance = planner::base::hypotenuse(x, y);
     footprint.emplace_back(x, y, 0.0);
     farthest = std::max(farthest, distance);
     finite = finite && std::isfinite(distance);
@@ -134,10 +135,11 @@ ObjectShape take_shape(CdrInput& input, const Eigen::Matrix3d& axes) {
   switch (type) {
     case ShapeType::kCylinder: {  // x and y are its diameter
       const double diameter = std::max(size.x(), size.y());
-      return {0.5 * std::hypot(diameter, size.z()), Solid::cylinder(0.5 * diameter, size.z(), pose)};
+      return {0.5 * planner::base::hypotenuse(diameter, size.z()), Solid::cylinder(0.5 * diameter, size.z(), pose)};
     }
     case ShapeType::kPolygon:
-      if (farthest > 0.0) return {std::hypot(farthest, 0.5 * size.z()), prism_over(footprint, size.z(), axes)};
+      if (farthest > 0.0)
+        return {planner::base::hypotenuse(farthest, 0.5 * size.z()), prism_over(footprint, size.z(), axes)};
       [[fallthrough]];
     case ShapeType::kBoundingBox:
       return {0.5 * size.norm(), Solid::box(size, pose)};

@@ -10,6 +10,7 @@
 
 #include "bridge/companion/route.hpp"
 #include "config/solids.hpp"
+#include "planner/base/portable_math.hpp"
 #include "planner/horizon/path_check.hpp"
 #include "planner/horizon/reach.hpp"
 
@@ -76,7 +77,7 @@ bool stays_at(const Vec3& place, const planner::verify::Plan& plan) {
 // What is placed in the world's frame is off, for the vehicle, by what the vehicle's own place is.
 template <typename All>
 void blur(All& all, double sigma) {
-  for (auto& one : all) one.position_sigma = std::hypot(one.position_sigma, sigma);
+  for (auto& one : all) one.position_sigma = planner::base::hypotenuse(one.position_sigma, sigma);
 }
 
 }  // namespace
@@ -244,7 +245,7 @@ double Planning::attainable_speed(double drag) const {
 void Planning::demand(const vehicle::VehicleState& state, double margin, planner::horizon::PathRequest& request) const {
   const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
   request.vehicle = mission_.vehicle;
-  request.margin = in_world ? std::hypot(margin, state.position_sigma) : margin;
+  request.margin = in_world ? planner::base::hypotenuse(margin, state.position_sigma) : margin;
   request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
   request.track_acceleration = settings_.horizon.track_acceleration;
   request.acceleration_trust = settings_.horizon.acceleration_trust;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bridge/tracking/track_inbox.hpp"
+#include "planner/base/portable_math.hpp"
 
 namespace jink::bridge::mavlink {
 
@@ -43,13 +44,13 @@ double set_velocity(const AdsbReport& report, Track& track) {
     track.velocity = report.horizontal_velocity * Vec3(std::cos(yaw), std::sin(yaw), 0.0);
   } else {
     const double speed = speed_told ? report.horizontal_velocity : emitter_model(report.emitter_type).speed;
-    track.velocity_sigma = std::hypot(track.velocity_sigma, speed);
+    track.velocity_sigma = planner::base::hypotenuse(track.velocity_sigma, speed);
   }
   if (climb_told) {
     track.velocity.z() = report.vertical_velocity;
     return 0.0;
   }
-  track.velocity_sigma = std::hypot(track.velocity_sigma, AdsbTracks::kClimbSigma);
+  track.velocity_sigma = planner::base::hypotenuse(track.velocity_sigma, AdsbTracks::kClimbSigma);
   return AdsbTracks::kClimbSigma;
 }
 
@@ -120,7 +121,7 @@ bool AdsbTracks::take(const AdsbReport& report) {
   if (aircraft_.size() >= kMostAircraft && !aircraft_.contains(id)) return refuse(id, "too many aircraft");
   const EmitterModel model = emitter_model(report.emitter_type);
   const double vertical_sigma = report.altitude_type == kGeometricAltitude ? kGeometricSigma : kBarometricSigma;
-  track.position_sigma = std::hypot(kHorizontalSigma, vertical_sigma);
+  track.position_sigma = planner::base::hypotenuse(kHorizontalSigma, vertical_sigma);
   track.radius = model.radius + kSigmas * track.position_sigma;
   const double climb_sigma = set_velocity(report, track);
   if (const char* bad = tracking::refusal(track); bad != nullptr) return refuse(id, bad);
@@ -153,7 +154,8 @@ bool AdsbTracks::poll(tracking::TrackMessage& message) {
         std::hypot(track.position_sigma, track.velocity_sigma * age, kManoeuvre * age * age / 2.0);
     // Beyond the limit a track is refused, and one that hardly anything is known of must not vanish.
     track.position_sigma = std::min(position_sigma, tracking::TrackLimits::kSigma);
-    track.velocity_sigma = std::min(std::hypot(track.velocity_sigma, kManoeuvre * age), tracking::TrackLimits::kSigma);
+    track.velocity_sigma =
+        std::min(planner::base::hypotenuse(track.velocity_sigma, kManoeuvre * age), tracking::TrackLimits::kSigma);
     track.age = age;
     message.tracks.push_back(track);
     if (aircraft.is_crewed) message.aircraft.push_back(aircraft.crewed);

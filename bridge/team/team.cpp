@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::bridge::team {
 namespace {
 
@@ -178,7 +180,7 @@ void Team::tell(double now, const vehicle::VehicleState& own, const setpoints::S
   intent.origin = own.origin;
   intent.radius = radius_;
   // Its path is one of its estimate, which is off in the frame that is shared.
-  const double off = std::hypot(deviation_, kSigmas * own.position_sigma);
+  const double off = planner::base::hypotenuse(deviation_, kSigmas * own.position_sigma);
   intent.margin = std::clamp(off, followed == nullptr ? kUnledMargin : kLeastMargin, kMostMargin);
   intent.path = shortened(committed(now, own, followed), now + kTold);
   for (TimedPoint& point : intent.path) point.t -= now;

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::planner::base {
 namespace {
 
@@ -47,7 +49,7 @@ std::shared_ptr<const Solid> Solid::prism(const Vec3& half, double corner, doubl
   solid.rounding_ = rounding;
   // The farthest point is on the side on which the centre is.
   const Vec3 far = (pose.axes.transpose() * pose.center).cwiseAbs() + half;
-  solid.reach_ = std::hypot(far.head<2>().norm() + corner, far.z()) + rounding;
+  solid.reach_ = hypotenuse(far.head<2>().norm() + corner, far.z()) + rounding;
   return std::make_shared<const Solid>(std::move(solid));
 }
 

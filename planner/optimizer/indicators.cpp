@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::planner::optimizer {
 namespace {
 
@@ -72,7 +74,7 @@ double hole_relative_size(std::span<const Point2> front) {
   double largest = 0.0;
   double sum = 0.0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const double gap = std::hypot(sorted[i][0] - sorted[i - 1][0], sorted[i][1] - sorted[i - 1][1]);
+    const double gap = base::hypotenuse(sorted[i][0] - sorted[i - 1][0], sorted[i][1] - sorted[i - 1][1]);
     largest = std::max(largest, gap);
     sum += gap;
   }

@@ -46,7 +46,7 @@ Nearest nearest_of_prism(const base::Solid& solid, const Vec3& point) {
   const Vec3 up(0.0, 0.0, sign.z());
   Nearest result;
   if (away > 0.0 && over.z() > 0.0) {
-    result.distance = std::hypot(away, over.z());
+    result.distance = base::hypotenuse(away, over.z());
     result.outward = (away * level + over.z() * up) / result.distance;
   } else {
     result.distance = std::max(away, over.z());

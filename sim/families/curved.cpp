@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "planner/base/portable_math.hpp"
 #include "sim/families/builders.hpp"
 #include "sim/families/families.hpp"
 #include "sim/world/obstacle_models.hpp"
@@ -91,7 +92,7 @@ void add_wall(config::Scenario& scenario, const Wall& wall) {
     for (int row = 0; row < rows; ++row) {
       const double y = -reach + 2.0 * reach * column / (columns - 1);
       const double z = 0.15 + (wall.height - 0.3) * row / (rows - 1);
-      if (std::hypot(y - wall.hole_y, z - wall.hole_z) < wall.hole_radius + kWallSphere) continue;
+      if (planner::base::hypotenuse(y - wall.hole_y, z - wall.hole_z) < wall.hole_radius + kWallSphere) continue;
       const Vec3 center = foot + y * across + (box.min.z() + z) * Vec3::UnitZ();
       scenario.obstacles.push_back({config::SphereShape{kWallSphere}, wall_motion(wall, center, across)});
     }

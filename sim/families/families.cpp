@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/base/portable_math.hpp"
 #include "sim/families/builders.hpp"
 #include "sim/world/world.hpp"
 
@@ -29,7 +30,7 @@ Mission::Mission(const Vec3& start, const Vec3& target, const planner::base::Veh
       up_(Vec3::Zero()),
       length_((target - start).norm()),
       cruise_(cruise_of(forward_, limits)) {
-  const double level = std::hypot(forward_.x(), forward_.y());
+  const double level = planner::base::hypotenuse(forward_.x(), forward_.y());
   if (level > 1e-9) left_ = Vec3(-forward_.y(), forward_.x(), 0.0) / level;
   up_ = Vec3(forward_.y() * left_.z() - forward_.z() * left_.y(), forward_.z() * left_.x() - forward_.x() * left_.z(),
              forward_.x() * left_.y() - forward_.y() * left_.x());

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::sim::vehicle {
 namespace {
 
@@ -36,7 +38,7 @@ Estimator::Estimator(const EstimateErrors& errors, std::uint64_t seed, const Mot
       velocity_noise_(errors.velocity_noise, kNoiseTime, kStep, planner::base::RandomStream(seed, kVelocityStream)),
       drift_(errors.drift, errors.drift_time, kStep, planner::base::RandomStream(seed, kDriftStream)),
       walk_(seed, kWalkStream),
-      accuracy_(std::hypot(errors.position_noise, errors.drift)),
+      accuracy_(planner::base::hypotenuse(errors.position_noise, errors.drift)),
       exact_(!errors.ins && errors.position_noise == 0.0 && errors.velocity_noise == 0.0 && errors.drift == 0.0) {
   if (errors.ins) ins_.emplace(seed, truth, airborne);
   update(truth);

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <variant>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::sim::world {
 namespace {
 
@@ -97,7 +99,8 @@ double speed(const config::LinearMotion& m, double t0, double t1) {
 
 double speed(const config::TrefoilMotion& m, double /*t0*/, double /*t1*/) {
   // With s = max(|sx|, |sy|): vx² + vy² <= s² (17 + 8 cos 3τ) <= 25 s², and |vz| <= 3 |sz|; all largest at τ = 0.
-  return std::hypot(5 * std::max(std::abs(m.scale.x()), std::abs(m.scale.y())), 3 * m.scale.z()) / std::abs(m.slower);
+  return planner::base::hypotenuse(5 * std::max(std::abs(m.scale.x()), std::abs(m.scale.y())), 3 * m.scale.z()) /
+         std::abs(m.slower);
 }
 
 double speed(const config::SineMotion& m, double /*t0*/, double /*t1*/) {
@@ -134,7 +137,7 @@ double deviation(const config::LinearMotion& m, double t0, double t1) {
 double deviation(const config::TrefoilMotion& m, double t0, double t1) {
   // As for the speed: ax² + ay² <= s² (65 - 16 cos 3τ) <= 81 s², and |az| <= 9 |sz|.
   const double planar = std::max(std::abs(m.scale.x()), std::abs(m.scale.y()));
-  const double acceleration = 9 * std::hypot(planar, m.scale.z()) / (m.slower * m.slower);
+  const double acceleration = 9 * planner::base::hypotenuse(planar, m.scale.z()) / (m.slower * m.slower);
   return std::min(smooth_deviation(acceleration, t1 - t0), rough_deviation(speed(m, t0, t1), t1 - t0));
 }
 

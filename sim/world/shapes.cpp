@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "planner/base/portable_math.hpp"
+
 namespace jink::sim::world {
 namespace {
 
@@ -153,7 +155,7 @@ double signed_distance(const config::BoxShape& shape, const Vec3& point) {
 double signed_distance(const config::CylinderShape& shape, const Vec3& point) {
   const double aside = point.head<2>().norm() - shape.radius;
   const double above = std::abs(point.z()) - 0.5 * shape.height;
-  return std::hypot(std::max(aside, 0.0), std::max(above, 0.0)) + std::min(std::max(aside, above), 0.0);
+  return planner::base::hypotenuse(std::max(aside, 0.0), std::max(above, 0.0)) + std::min(std::max(aside, above), 0.0);
 }
 
 double signed_distance(const config::CapsuleShape& shape, const Vec3& point) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "planner/base/random.hpp"
@@ -73,6 +74,28 @@ TEST(Exponential, MatchesTheLibrary) {
     ASSERT_NEAR(exponential(x) / std::exp(x), 1.0, 2e-16 * std::max(4.0, std::abs(x))) << x;
     const double small = random.uniform(-1.0, 1.0);
     ASSERT_NEAR(exponential(small), std::exp(small), 1e-15) << small;
+  }
+}
+
+TEST(Hypotenuse, KnowsTheSpecialTriangles) {
+  EXPECT_EQ(hypotenuse(0.0, 0.0), 0.0);
+  EXPECT_EQ(hypotenuse(3.0, -4.0), 5.0);
+  EXPECT_EQ(hypotenuse(-12.0, 5.0), 13.0);
+  EXPECT_EQ(hypotenuse(1e100, 1e-100), 1e100);
+  EXPECT_EQ(hypotenuse(std::numeric_limits<double>::infinity(), 1.0), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(hypotenuse(std::numeric_limits<double>::quiet_NaN(), 1.0)));
+  EXPECT_TRUE(std::isnan(hypotenuse(1.0, std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(Hypotenuse, IsWithinOneUnitInTheLastPlace) {
+  RandomStream random(1);
+  for (int i = 0; i < 200000; ++i) {
+    const double size = std::exp(random.uniform(-300.0, 300.0));
+    const double x = size * random.uniform(-1.0, 1.0);
+    const double y = size * random.uniform(-1.0, 1.0) * (i % 2 == 0 ? 1.0 : std::exp(random.uniform(-40.0, 0.0)));
+    const double exact =
+        static_cast<double>(std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y));
+    EXPECT_LE(std::abs(hypotenuse(x, y) - exact), std::nextafter(exact, 1e300) - exact) << x << " " << y;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "planner/base/portable_math.hpp"
 #include "planner/base/solid.hpp"
 #include "planner/horizon/path_check.hpp"
 #include "planner/verify/solid_contact.hpp"
@@ -55,7 +56,7 @@ std::vector<planner::base::Track> inflated_obstacles(const planner::horizon::Pat
     spheres.push_back(track);
   }
   for (planner::base::Track& sphere : spheres) {
-    const double sigma = std::hypot(sphere.position_sigma, sphere.velocity_sigma * sphere.age);
+    const double sigma = planner::base::hypotenuse(sphere.position_sigma, sphere.velocity_sigma * sphere.age);
     if (sphere.body.solid) sphere.radius = sphere.body.solid->reach();
     sphere.radius +=
         request.vehicle.radius + request.margin + std::min(settings.clearance_limit, settings.sigma_factor * sigma);

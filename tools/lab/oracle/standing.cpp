@@ -6,6 +6,7 @@
 #include <queue>
 #include <utility>
 
+#include "planner/base/portable_math.hpp"
 #include "sim/world/obstacle_models.hpp"
 
 namespace jink::tools::lab::oracle {
@@ -75,7 +76,7 @@ Index Standing::node_of(std::size_t number) const {
 }
 
 double Standing::duration(const Vec3& way) const {
-  return std::hypot(way.head<2>().norm() / max_speed_, way.z() / max_climb_);
+  return planner::base::hypotenuse(way.head<2>().norm() / max_speed_, way.z() / max_climb_);
 }
 
 double Standing::distance(const Index& node) {
