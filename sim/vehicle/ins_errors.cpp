@@ -119,7 +119,9 @@ void InsErrors::propagate_covariance(const Motion& truth) {
   transition.block<3, 3>(kVelocity, kAttitude) = kTime * force;
   transition.block<3, 3>(kVelocity, kAccelBias) = -kTime * rotation;
   transition.block<3, 3>(kAttitude, kGyroBias) = -kTime * rotation;
-  covariance_ = (transition * covariance_ * transition.transpose()).eval();
+  // Eigen's product of large matrices fuses multiplications with additions where a processor can.
+  const Covariance moved = transition.lazyProduct(covariance_);
+  covariance_ = moved.lazyProduct(transition.transpose());
   const auto add = [this](Index index, double sigma) {
     covariance_.diagonal().segment<3>(index).array() += square(sigma) * kFilterStep * kTime;
   };
