@@ -184,6 +184,35 @@ def users_files(debs, place):
     check(not (root / "etc/jink").exists(), "a purge takes it")
 
 
+def service(root, scratch):
+    """The unit is one, and what it starts flies, and is stopped as systemd does it."""
+    unit = root / "usr/lib/systemd/system/jink.service"
+    if shutil.which("systemd-analyze"):
+        said = output("systemd-analyze", "verify", "--man=no", unit)
+        check(not said, f"systemd has nothing to say to {unit.name} {said}")
+    text = unit.read_text()
+    command = re.search(r"^ExecStart=/bin/sh -c '(.*)'$", text, re.MULTILINE)[1].replace("%%", "%")
+    mission = re.search(r"^Environment=JINK_MISSION=/(etc/jink/\S+)", text, re.MULTILINE)[1]
+    state = scratch / "state"
+    state.mkdir()
+    environment = {"PATH": f"{root / 'usr/bin'}:{os.environ['PATH']}", "JINK_MISSION": str(root / mission)}
+    with subprocess.Popen([root / "usr/bin/jink", "sim", root / "etc/jink/scenarios/crossing.yaml"], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL) as simulator:
+        try:
+            flight = subprocess.Popen(["/bin/sh", "-c", command], cwd=state, env=environment, text=True, stdout=subprocess.PIPE,
+                                      stderr=subprocess.STDOUT)
+            said = ""
+            for line in flight.stdout:
+                said += line
+                if re.search(r"offboard +\d+ %", line) and flight.poll() is None:
+                    flight.terminate()
+            status = flight.wait()
+        finally:
+            simulator.terminate()
+    check(status == 1 and "accepted: hold" in said and list(state.glob("flight-*.jsonl")),
+          f"{unit.name} flies; SIGTERM brakes and hands over: {said.splitlines()[-4:-3]}")
+
+
 def verdict_of_lintian(debs):
     if shutil.which("lintian") is None:
         print("     lintian is not installed: not asked")
@@ -214,6 +243,7 @@ def main(arguments):
             words(root)
             users_files(debs, place)
             verdict_of_lintian(debs)
+            service(root, scratch)
             programs(root, scratch)
             library(root, scratch)
         except Failed as failed:
