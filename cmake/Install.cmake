@@ -5,6 +5,12 @@
 # Nobody who packs three programs wants all tests compiled: what is installed is built before, by name.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
+# Who packs, as for Debian's own tools.
+set(JINK_MAINTAINER "the jink authors <jink@example.org>")
+if(DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
+  set(JINK_MAINTAINER "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
+
 # jink_install_program(target): with the way to the MAVSDK that the component jink has.
 function(jink_install_program target component)
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/jink/mavsdk")
