@@ -55,9 +55,8 @@ function(jink_install_library name)
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${alias})
     target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:include/jink>)
     set_property(TARGET ${target} APPEND PROPERTY INTERFACE_COMPILE_FEATURES cxx_std_20)
-    # Functions in headers are compiled by whoever includes them, and one copy of each is linked: the same bits, also on
-    # processors with fused multiply-add.
-    target_compile_options(${target} INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
+    # Functions in headers are compiled by whoever includes them, and one copy of each is linked.
+    target_compile_options(${target} INTERFACE "$<INSTALL_INTERFACE:${JINK_SAME_BITS}>")
     list(APPEND targets ${target})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION include/jink/${room} COMPONENT libjink-dev
             FILES_MATCHING PATTERN *.hpp)

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Target mavsdk_c: MAVSDK's C interface, out of the Python wheel in .venv. There is no C or C++ development package of
-# it on Debian; the wheel's one library needs the C library alone, and bridge/mavsdk/c_api.h declares what is used of it.
+# Target mavsdk_c: MAVSDK's C interface, out of the Python wheel in .venv, or of another architecture's wheel in the
+# sysroot. There is no C or C++ development package of it on Debian; the wheel's one library needs the C library alone, and
+# bridge/mavsdk/c_api.h declares what is used of it.
 # Its SONAME has a version that the file's name lacks, so it is copied to that name beside the binaries.
-file(GLOB _mavsdk_wheel ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/mavsdk/lib/libcmavsdk.so)
+set(_mavsdk_place ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/mavsdk/lib)
+if(CMAKE_SYSROOT)
+  set(_mavsdk_place ${CMAKE_SYSROOT}/usr/lib)
+endif()
+file(GLOB _mavsdk_wheel ${_mavsdk_place}/libcmavsdk.so)
 if(NOT _mavsdk_wheel)
-  message(FATAL_ERROR "MAVSDK not found: no .venv/lib/python3*/site-packages/mavsdk/lib/libcmavsdk.so in "
-                      "${PROJECT_SOURCE_DIR}; run tools/setup.sh first, or configure with -DJINK_BUILD_BRIDGE=OFF")
+  message(FATAL_ERROR "MAVSDK not found: no ${_mavsdk_place}/libcmavsdk.so; run tools/setup.sh first, or configure with "
+                      "-DJINK_BUILD_BRIDGE=OFF")
 endif()
 list(GET _mavsdk_wheel 0 _mavsdk_wheel)
 set(_mavsdk_dir ${PROJECT_BINARY_DIR}/mavsdk)

@@ -43,8 +43,13 @@ With a simulator without a screen, and reports of flights. First: jink demo.")
   list(JOIN conffiles "\n" conffiles)
   file(WRITE ${PROJECT_BINARY_DIR}/package/conffiles "${conffiles}\n")
   set(CPACK_DEBIAN_JINK_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/package/conffiles)
-  # No package has MAVSDK's library: dpkg-shlibdeps is shown it.
+  # No package has MAVSDK's library: dpkg-shlibdeps is shown it, and another architecture's libraries.
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/mavsdk)
+  if(CMAKE_SYSROOT)
+    foreach(folder lib usr/lib)
+      list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/${folder}/${CMAKE_LIBRARY_ARCHITECTURE})
+    endforeach()
+  endif()
 endif()
 if(JINK_BUILD_BRIDGE AND JINK_BUILD_LAB)
   jink_package(jink-lab science "collision-free flight among moving obstacles: what measures it

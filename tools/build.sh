@@ -5,8 +5,8 @@
 # JINK_UNITY=ON compiles all sources of a target as one, in half the time where everything is compiled.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-preset=${1:?a preset: dev, release, asan or tsan}; shift
-groups=(${JINK_GROUPS-lab test}); [ "$preset" != asan ] || groups+=(sanitizers)
+preset=${1:?a preset: dev, release, asan, tsan or arm64}; shift
+groups=(${JINK_GROUPS-lab test}); [ "$preset" != asan ] || groups+=(sanitizers); [ "$preset" != arm64 ] || groups+=(arm64)
 tools/setup.sh ${groups[@]+"${groups[@]}"}
 options=(-DCMAKE_UNITY_BUILD="${JINK_UNITY:-OFF}" -DCMAKE_UNITY_BUILD_BATCH_SIZE=0)
 [ -f "build/$preset/CMakeCache.txt" ] || options+=(-DJINK_BUILD_LAB=OFF -DJINK_BUILD_TESTS=OFF)

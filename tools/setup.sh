@@ -10,6 +10,7 @@
 #     package     tools/package.sh
 #     lintian     tests/package/check_package.py
 #     sanitizers  tools/fuzz.sh and the preset asan
+#     arm64       the preset arm64: cross-compiler, qemu, and in build/sysroot-arm64 what the groups beside it link
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,6 +20,7 @@ packages=(
   libfastrtps-dev libfastcdr-dev fastddsgen
 )
 requirements=(tools/requirements.txt)
+foreign=
 for group in "$@"; do
   case $group in
   lab) packages+=(libompl-dev libpagmo-dev libboost-math-dev gnuplot-nox fonts-dejavu-core) ;;
@@ -34,6 +36,7 @@ for group in "$@"; do
   package) packages+=(dpkg-dev file) ;;
   lintian) packages+=(lintian) ;;
   sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
+  arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static) foreign=arm64 ;;
   *) echo "setup: unknown group of packages: $group" >&2; exit 2 ;;
   esac
 done
@@ -64,3 +67,11 @@ for file in "${requirements[@]}"; do
   $venv/bin/pip install -q --disable-pip-version-check -r "$file"
   cp "$file" "$installed"
 done
+
+if [ -n "$foreign" ]; then
+  linked=()
+  for p in "${packages[@]}"; do
+    [[ $p != *-dev ]] || linked+=("$p")
+  done
+  tools/sysroot.sh $foreign "${linked[@]}"
+fi
