@@ -67,7 +67,8 @@ Solution solve(std::span<const MotionSample> samples, const Weights& weights, do
   }
   const Eigen::LDLT<Normal> factors(normal);
   Solution solution;
-  solution.terms = factors.solve(right);
+  // Axis by axis: Eigen solves for all at once in blocks, whose sums depend on the processor.
+  for (int axis = 0; axis < 3; ++axis) solution.terms.col(axis) = factors.solve(right.col(axis));
   const double cost = total - right.cwiseProduct(solution.terms).sum();
   if (solution.terms.allFinite()) solution.cost = std::max(0.0, cost);
   return solution;

@@ -52,7 +52,7 @@ def summaries(root, native, scratch):
     program = (*EMULATOR, root / "usr/bin/jink")
     check(output(*program, "--version") == output(native / "usr/bin/jink", "--version"), "jink --version")
     scenarios = root / "etc/jink/scenarios"
-    for command, name, *options in (("plan", "crossing"), ("plan", "table2-5", "--mode", "paper"), ("replay", "table2-4")):
+    for command, name, *options in (("plan", "crossing"), ("plan", "table2-5", "--mode", "paper"), ("replay", "crossing")):
         told = []
         for run in (program, (native / "usr/bin/jink",)):
             file = scratch / "summary.json"
