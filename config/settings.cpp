@@ -227,6 +227,12 @@ std::optional<Conflict> find_conflict(const Settings& s) {
   return std::nullopt;
 }
 
+/// What set_config_folder() said; empty: nothing.
+std::filesystem::path& told_folder() {
+  static std::filesystem::path folder;
+  return folder;
+}
+
 Settings read_file(const std::filesystem::path& file) {
   const Map root(read_document(file), {"format", "optimizer", "paper", "horizon", "companion"}, "jink-planner/1");
   Settings settings;
@@ -313,11 +319,12 @@ void apply_all(const std::vector<Override>& changes, Settings& settings) {
 }  // namespace
 
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::filesystem::path read = file.empty() ? config_folder() / "planner.yaml" : file;
   Settings settings;
   try {
-    settings = read_file(file);
+    settings = read_file(read);
   } catch (const ConfigError& error) {
-    throw ConfigError(error.what() + where_the_new_one_is(file));
+    throw ConfigError(error.what() + where_the_new_one_is(read));
   }
   std::vector<Override> changes;
   changes.reserve(overrides.size());
@@ -355,6 +362,7 @@ std::filesystem::path config_folder() {
   // Read only, and nothing in jink changes the environment.
   const char* const folder = std::getenv("JINK_CONFIG_DIR");  // NOLINT(concurrency-mt-unsafe)
   if (folder != nullptr && *folder != '\0') return folder;
+  if (!told_folder().empty()) return told_folder();
   std::error_code unknown;  // where there is no /proc
   const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
   const std::filesystem::path prefix = programs.parent_path();
@@ -364,6 +372,10 @@ std::filesystem::path config_folder() {
   for (const std::filesystem::path& candidate : {installed, programs / "etc/jink"})
     if (std::filesystem::exists(candidate / "planner.yaml", unknown)) return candidate;
   return "/etc/jink";
+}
+
+void set_config_folder(std::filesystem::path folder) {
+  told_folder() = std::move(folder);
 }
 
 }  // namespace jink::config

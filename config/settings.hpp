@@ -36,11 +36,11 @@ struct Settings {
   CompanionSettings companion;
 };
 
-/// Reads and checks a jink-planner/1 file, then applies `overrides` in order, each "section.key=value" as of `--set`.
-/// Every key is required; unknown ones are errors. Beyond each key's range: a population is no smaller than its number
-/// of slaves, optimizer.wep_min <= wep_max, horizon.step <= time, and the horizon's weights are not all 0. Throws
-/// ConfigError (config/error.hpp) naming file and line, and FILE.dpkg-dist where an upgrade has left that, or "--set"
-/// and the text.
+/// Reads and checks a jink-planner/1 file, of an empty name the shipped planner.yaml, then applies `overrides` in
+/// order, each "section.key=value" as of `--set`. Every key is required; unknown ones are errors. Beyond each key's
+/// range: a population is no smaller than its number of slaves, optimizer.wep_min <= wep_max, horizon.step <= time, and
+/// the horizon's weights are not all 0. Throws ConfigError (config/error.hpp) naming file and line, and FILE.dpkg-dist
+/// where an upgrade has left that, or "--set" and the text.
 Settings load_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// One parameter as text: "horizon.margin", "0.35". Numbers read back to the same bits.
@@ -60,8 +60,13 @@ Settings recorded_settings(const std::string& source, const std::vector<SettingT
                            const std::vector<std::string>& overrides, std::vector<std::string>& missing);
 
 /// Where the project's own files are, planner.yaml, vehicles/, scenarios/ and missions/: the environment variable
-/// JINK_CONFIG_DIR, else etc/jink of where the program is installed (/etc/jink for /usr/bin), else the source tree's
-/// config folder for a program in its build folder, else /etc/jink. The environment is read at each call.
+/// JINK_CONFIG_DIR, else what set_config_folder() said, else etc/jink of where the program is installed (/etc/jink for
+/// /usr/bin), else the source tree's config folder for a program in its build folder, else /etc/jink. The environment
+/// is read at each call.
 std::filesystem::path config_folder();
+
+/// Where config_folder() finds them in a process that is not a program of jink's, as Python; JINK_CONFIG_DIR still
+/// comes first. To be told once, before any thread asks.
+void set_config_folder(std::filesystem::path folder);
 
 }  // namespace jink::config

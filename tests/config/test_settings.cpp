@@ -234,5 +234,20 @@ TEST(Nearest, KnowsTyposAndLeavesTheRest) {
   EXPECT_EQ(nearest(std::string(1000, 'x'), names), "");
 }
 
+TEST(Settings, WithoutAFileAreTheShippedOnes) {
+  EXPECT_EQ(list_settings(load_settings({})), list_settings(load_settings(config_folder() / "planner.yaml")));
+}
+
+TEST(ConfigFolder, IsWhereAProcessThatIsNotJinksWasTold) {
+  const std::filesystem::path shipped = config_folder();
+  set_config_folder("/elsewhere");
+  EXPECT_EQ(config_folder(), "/elsewhere");
+  ASSERT_EQ(setenv("JINK_CONFIG_DIR", "/first", 1), 0);  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_EQ(config_folder(), "/first");
+  ASSERT_EQ(unsetenv("JINK_CONFIG_DIR"), 0);  // NOLINT(concurrency-mt-unsafe)
+  set_config_folder({});
+  EXPECT_EQ(config_folder(), shipped);
+}
+
 }  // namespace
 }  // namespace jink::config

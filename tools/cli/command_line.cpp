@@ -2,21 +2,16 @@
 #include "tools/cli/command_line.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <limits>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -28,47 +23,22 @@ namespace {
 std::atomic<bool> g_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
-constexpr std::uint64_t kMostThreads = 256;
-
-/// What is wrong with the name of a file to be written; empty: nothing.
-std::string why_unwritable(const std::string& file) {
-  if (file.empty()) return "is empty; expected the name of a file";
-  std::error_code ignored;  // what cannot be examined is not there, and opening it tells
-  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
-  if (std::filesystem::is_directory(status)) return "'" + file + "' is a directory";
-  const bool there = std::filesystem::exists(status);
-  if (there && !std::filesystem::is_regular_file(status))
-    return "";  // opening a pipe would say something to its reader
-  if (!std::ofstream(file, std::ios::app)) return "'" + file + "' cannot be written";
-  // A link that leads nowhere yet would be what is removed.
-  if (!there && !std::filesystem::is_symlink(file, ignored)) std::filesystem::remove(file, ignored);
-  return "";
-}
-
 }  // namespace
 
-Validator whole_number(std::uint64_t least, std::uint64_t most) {
-  const auto check = [=](std::string& text) {
+Validator whole_number(const base::WholeRange& range) {
+  return [range](std::string& text) {
     std::uint64_t value = 0;
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (text.empty() || error != std::errc() || end != last || value < least || value > most)
-      return fmt::format("Value {} not in range {} to {}", text, least, most);
-    text = std::to_string(value);
-    return std::string();
+    std::string wrong = base::read_whole(text, range, value);
+    if (wrong.empty()) text = std::to_string(value);
+    return wrong;
   };
-  return check;
 }
 
-Validator number_in(double least, double most) {
-  const auto check = [=](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    const bool number = !text.empty() && end == text.c_str() + text.size();
-    return number && value >= least && value <= most ? std::string()
-                                                     : fmt::format("Value {} not in range {} to {}", text, least, most);
+Validator number_in(const base::NumberRange& range) {
+  return [range](const std::string& text) {
+    double ignored = 0.0;
+    return base::read_number(text, range, ignored);
   };
-  return check;
 }
 
 Validator some_name() {
@@ -76,35 +46,15 @@ Validator some_name() {
 }
 
 Validator writable_file() {
-  return [](const std::string& text) { return text == "-" ? std::string() : why_unwritable(text); };
-}
-
-void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
-  namespace fs = std::filesystem;
-  const auto same = [](const NamedFile& a, const NamedFile& b) {
-    if (a.file.empty() || b.file.empty() || a.file == "-" || b.file == "-") return false;
-    std::error_code error;  // of what is not there yet
-    const fs::path one = fs::weakly_canonical(a.file, error), other = fs::weakly_canonical(b.file, error);
-    if (error || one != other) return false;
-    const fs::file_status status = fs::status(one, error);
-    return !fs::exists(status) || fs::is_regular_file(status);
-  };
-  std::vector<NamedFile> taken = read;
-  for (const NamedFile& next : written) {
-    for (const NamedFile& other : taken) {
-      if (same(next, other))
-        throw UsageError(fmt::format("{}: '{}' is {} too; expected another file", next.name, next.file, other.name));
-    }
-    taken.push_back(next);
-  }
+  return [](const std::string& text) { return text == "-" ? std::string() : base::why_unwritable(text); };
 }
 
 void CommonOptions::add_to(const Parser& parser) {
   parser.add_option("--seed", seed, "seed of every random number (recorded; never drawn from the clock)")
-      .transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .transform(whole_number(base::kSeed))
       .show_default();
   parser.add_option("--threads", threads, "threads of the planner, 1 to 256 (default: one for each core)")
-      .transform(whole_number(1, kMostThreads));
+      .transform(whole_number(base::kThreads));
   parser.add_option("--config", config, "planner parameters (default: the shipped planner.yaml)").check(some_name());
   parser.add_option("--set", overrides, "change one parameter: section.key=value; may be repeated").single_value();
   parser.add_option("--json", json, "write the summary object to FILE; - is stdout, then all else goes to stderr")
@@ -112,8 +62,7 @@ void CommonOptions::add_to(const Parser& parser) {
 }
 
 config::Settings CommonOptions::settings() const {
-  return config::load_settings(
-      config.empty() ? config::config_folder() / "planner.yaml" : std::filesystem::path(config), overrides);
+  return config::load_settings(config, overrides);
 }
 
 int CommonOptions::thread_count() const {
@@ -178,7 +127,7 @@ void Printer::live(const std::string& text) const {
 
 void require_json(const std::string& file) {
   if (file.empty() || file == "-") return;
-  if (const std::string why = why_unwritable(file); !why.empty()) throw UsageError("--json: " + why);
+  if (const std::string why = base::why_unwritable(file); !why.empty()) throw UsageError("--json: " + why);
 }
 
 void write_json(const std::string& file, const nlohmann::ordered_json& summary) {

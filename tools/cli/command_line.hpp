@@ -17,30 +17,25 @@
 
 #include "config/settings.hpp"
 #include "tools/base/exit_code.hpp"
+#include "tools/base/files.hpp"
+#include "tools/base/option_ranges.hpp"
 #include "tools/cli/parser.hpp"
 
 namespace jink::tools::cli {
 
+using base::NamedFile;
+using base::refuse_same_file;
 using base::UsageError;
 
 /// The value of an option, checked as it is parsed. For Option::transform: decimal, so that 010 is ten.
-Validator whole_number(std::uint64_t least, std::uint64_t most);
+Validator whole_number(const base::WholeRange& range);
 /// The same for a number that may have a fraction; NaN is in no range. For Option::check.
-Validator number_in(double least, double most);
+Validator number_in(const base::NumberRange& range);
 /// The name of a file or folder: not empty, as an unset variable of a shell is. For Option::check.
 Validator some_name();
 /// The name of a file that can be written, found out before anything is done; what is there stays as it is. "-" passes
 /// too. For Option::check.
 Validator writable_file();
-
-/// A file that a command reads or writes, and the option or argument that names it; none where `file` is empty.
-struct NamedFile {
-  std::string name;
-  std::string file;
-};
-/// Throws UsageError where one of `written` is another one of them or one of `read`: what is in it would be lost.
-/// Devices and pipes may be named several times.
-void refuse_same_file(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
 /// Options that every flying and planning command takes.
 struct CommonOptions {

@@ -74,6 +74,10 @@ Option Parser::add_option(const std::string& name, double& value, const std::str
   return Option(app_->add_option(name, value, what));
 }
 
+Option Parser::add_option(const std::string& name, std::optional<int>& value, const std::string& what) const {
+  return Option(app_->add_option(name, value, what));
+}
+
 Option Parser::add_option(const std::string& name, std::optional<double>& value, const std::string& what) const {
   return Option(app_->add_option(name, value, what));
 }

@@ -55,6 +55,7 @@ class Parser {
   Option add_option(const std::string& name, int& value, const std::string& what) const;
   Option add_option(const std::string& name, std::uint64_t& value, const std::string& what) const;
   Option add_option(const std::string& name, double& value, const std::string& what) const;
+  Option add_option(const std::string& name, std::optional<int>& value, const std::string& what) const;
   Option add_option(const std::string& name, std::optional<double>& value, const std::string& what) const;
   Option add_flag(const std::string& name, bool& value, const std::string& what) const;
   /// One that was added.

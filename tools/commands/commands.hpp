@@ -3,23 +3,17 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "bridge/companion/planner_task.hpp"
-#include "planner/base/settings.hpp"
-#include "planner/optimizer/optimizer.hpp"
 #include "tools/cli/command_line.hpp"
+#include "tools/runs/flight.hpp"
+#include "tools/runs/plan.hpp"
 
 namespace jink::tools::commands {
 
-/// An optimizer in PMOMVO's place.
-struct Algorithm {
-  planner::optimizer::MakeOptimizer make;
-  int slaves = 1;  ///< sub-swarms that it has
-};
+using runs::Algorithm;
 
 /// What plans besides jink's own planner, by name. The flight program carries none: whoever names one there gets
 /// NeedsLaboratory.
@@ -27,10 +21,7 @@ struct OtherPlanners {
   std::vector<std::string> algorithms;  ///< for `plan --algorithm`
   std::vector<std::string> pilots;      ///< for `replay --pilot`
   std::function<Algorithm(std::string_view)> algorithm;
-  std::function<std::unique_ptr<bridge::companion::PlannerTask>(std::string_view,
-                                                                const bridge::companion::PlannerTaskSettings&,
-                                                                double latency, const planner::base::PaperSettings&)>
-      pilot;
+  runs::MakePilot pilot;
 };
 
 /// Thrown where a command names a planner that the flight program does not carry: jink-lab is to do it.

@@ -146,7 +146,7 @@ cli::Subcommand add_doctor(const cli::Parser& jink) {
   const auto options = std::make_shared<DoctorOptions>();
   app.add_option("MISSION", options->mission, "mission file").required();
   app.add_option("--seconds", options->seconds, "how long to wait for the autopilot, and then to listen; 1 to 600")
-      .check(cli::number_in(1.0, 600.0))
+      .check(cli::number_in({1.0, 600.0}))
       .show_default();
   options->common.add_to(app);
   app.option("--json").check(cli::writable_file());

@@ -26,9 +26,9 @@
 #include "config/mission.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/cli/progress_line.hpp"
-#include "tools/cli/summaries.hpp"
 #include "tools/log/flight_log.hpp"
 #include "tools/report/html_report.hpp"
+#include "tools/runs/summaries.hpp"
 
 namespace jink::tools::commands {
 namespace {
@@ -217,7 +217,7 @@ std::optional<bridge::companion::FlightSummary> take_fence(bridge::mavsdk::Mavsd
 /// Tells how it ended.
 void finish(const FlyOptions& options, const config::Mission& mission, const bridge::companion::FlightSummary& flight,
             const cli::Printer& printer, const std::unique_ptr<log::FlightLog>& log) {
-  const auto summary = cli::flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
+  const auto summary = runs::flight_summary("mission", mission.name, options.common.seed, flight, std::nullopt);
   cli::write_json(options.common.json, summary);
   if (flight.missing_peer != bridge::supervisor::MissingPeer::kNone) {
     std::fprintf(stderr, "jink: %s; %s\n", flight.reason.c_str(),
@@ -225,7 +225,7 @@ void finish(const FlyOptions& options, const config::Mission& mission, const bri
                      ? "start `jink sim SCENARIO`, PX4 SITL, or check the mission's connection"
                      : "start `jink sim SCENARIO` or your track writer, or check the mission's dds.domain");
   } else {
-    printer.line(cli::describe_flight(summary));
+    printer.line(runs::describe_flight(summary));
   }
   if (!log) return;
   log->close();

@@ -91,7 +91,7 @@ cli::Subcommand add_report(const cli::Parser& jink) {
                  "a figure of one flight, 180 mm wide at 300 dpi; then the page is written with --out alone")
       .check(cli::writable_file());
   app.add_option("--at", options->at, "the instant that the figure shows, s of the log (default: least clearance)")
-      .check(cli::number_in(0.0, 1e9));
+      .check(cli::number_in({0.0, 1e9}));
   return {app, [options] { return run(*options); }};
 }
 

@@ -16,12 +16,12 @@
 #include "config/mission.hpp"
 #include "config/scenario.hpp"
 #include "sim/dds/vehicle_topics.hpp"
-#include "sim/flight/simulator.hpp"
 #include "sim/flight/virtual_clouds.hpp"
+#include "sim/simulator/simulator.hpp"
 #include "tools/cli/command_line.hpp"
 #include "tools/cli/progress_line.hpp"
-#include "tools/cli/summaries.hpp"
 #include "tools/log/flight_log.hpp"
+#include "tools/runs/summaries.hpp"
 
 namespace jink::tools::commands {
 namespace {
@@ -62,7 +62,7 @@ sim::vehicle::Px4Version px4_version(const std::string& name) {
 }
 
 /// Events to the terminal and the log, the truth to the log.
-class LogSink final : public sim::flight::SimulatorObserver {
+class LogSink final : public sim::simulator::SimulatorObserver {
  public:
   explicit LogSink(cli::BackgroundPrinter& printer) : printer_(printer) {}
   /// From here on, what was told before included. None: there is no log.
@@ -111,7 +111,7 @@ std::string mode_text(const sim::vehicle::Autopilot& autopilot) {
   }
 }
 
-std::string status(const sim::flight::Simulator& simulator, const bridge::dds::DdsTrackWriter* writer) {
+std::string status(const sim::simulator::Simulator& simulator, const bridge::dds::DdsTrackWriter* writer) {
   const int readers = writer != nullptr ? writer->readers() : -1;  // -1: no tracks are told
   std::string text;
   for (std::size_t k = 0; k < simulator.vehicle_count(); ++k) {
@@ -139,7 +139,7 @@ std::string status(const sim::flight::Simulator& simulator, const bridge::dds::D
 /// Until every companion in OFFBOARD has sent a setpoint in this turn, or for a second. A turn in which none is waited
 /// for takes as long as in real time, since whoever connects then can follow no faster clock; `turn` is its beginning,
 /// and becomes the next one's.
-void wait_for_companions(sim::flight::Simulator& simulator, double speed, bool awaited,
+void wait_for_companions(sim::simulator::Simulator& simulator, double speed, bool awaited,
                          std::chrono::steady_clock::time_point& turn) {
   const auto begun = std::chrono::steady_clock::now();
   const std::chrono::duration<double> whole(kTurnSteps * sim::vehicle::VehicleModel::kStep / speed);
@@ -157,7 +157,7 @@ void wait_for_companions(sim::flight::Simulator& simulator, double speed, bool a
 }
 
 /// Steps in real time (or `speed` times it; a late step is caught up) or in lockstep, until the end.
-void run_until_the_end(sim::flight::Simulator& simulator, const SimOptions& options, cli::BackgroundPrinter& printer,
+void run_until_the_end(sim::simulator::Simulator& simulator, const SimOptions& options, cli::BackgroundPrinter& printer,
                        const bridge::dds::DdsTrackWriter* writer) {
   const auto begun = std::chrono::steady_clock::now();
   auto turn = begun;
@@ -206,11 +206,11 @@ class DdsSides {
 };
 
 /// The summary of vehicle 0's flight; its outcome and reason are those of the vehicle that fared worst.
-nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const SimOptions& options) {
+nlohmann::ordered_json summary_of(const sim::simulator::Simulator& simulator, const SimOptions& options) {
   const std::vector<sim::flight::VehicleReport> reports = simulator.reports();
   const std::string& name = simulator.world().scenario().name;
-  auto summary =
-      cli::flight_summary("scenario", name, options.common.seed, reports.front().flight, reports.front().min_clearance);
+  auto summary = runs::flight_summary("scenario", name, options.common.seed, reports.front().flight,
+                                      reports.front().min_clearance);
   if (reports.size() == 1) return summary;
   const bridge::supervisor::Outcome outcome = sim::flight::worst(reports);
   summary["outcome"] = bridge::supervisor::to_string(outcome);
@@ -221,14 +221,14 @@ nlohmann::ordered_json summary_of(const sim::flight::Simulator& simulator, const
       reason += fmt::format("{}vehicle {}: {}", reason.empty() ? "" : "; ", k, report.flight.reason);
   }
   summary["reason"] = reason;
-  summary["vehicles"] = cli::vehicles_json(reports, simulator.autopilot(0).options().system_id);
+  summary["vehicles"] = runs::vehicles_json(reports, simulator.autopilot(0).options().system_id);
   return summary;
 }
 
 /// What the vehicle's depth camera or lidar sees, as a ROS 2 driver would publish it.
 class CloudSide {
  public:
-  CloudSide(const SimOptions& options, const sim::flight::Simulator& simulator)
+  CloudSide(const SimOptions& options, const sim::simulator::Simulator& simulator)
       : speed_(options.speed),
         simulator_(simulator),
         node_(options.domain, "jink sim camera", options.dds_security),
@@ -244,7 +244,7 @@ class CloudSide {
 
  private:
   double speed_;
-  const sim::flight::Simulator& simulator_;
+  const sim::simulator::Simulator& simulator_;
   bridge::dds::DdsParticipant node_;
   bridge::dds::DdsCloudWriter writer_;
   sim::world::ScanPipeline pipeline_;
@@ -293,11 +293,11 @@ void check_instances(const config::Scenario& scenario, const SimOptions& options
                   kLastInstance - static_cast<int>(scenario.vehicles.size())));
 }
 
-std::unique_ptr<sim::flight::Simulator> make_simulator(const config::Scenario& scenario,
-                                                       const sim::flight::SimulatorOptions& options,
-                                                       sim::flight::SimulatorParts parts) {
+std::unique_ptr<sim::simulator::Simulator> make_simulator(const config::Scenario& scenario,
+                                                          const sim::simulator::SimulatorOptions& options,
+                                                          sim::simulator::SimulatorParts parts) {
   try {
-    return std::make_unique<sim::flight::Simulator>(scenario, options, std::move(parts));
+    return std::make_unique<sim::simulator::Simulator>(scenario, options, std::move(parts));
   } catch (const std::runtime_error& error) {
     throw cli::UsageError(fmt::format("--instance {}: {}", options.instance, error.what()));
   }
@@ -322,7 +322,7 @@ int run(const SimOptions& options) {
     const double age = (now - message.stamp) / options.speed;
     return !writer || writer->publish(message.tracks, unix_now() - age + message.clock_offset);
   };
-  sim::flight::SimulatorOptions choices;
+  sim::simulator::SimulatorOptions choices;
   choices.seed = options.common.seed;
   choices.instance = options.instance;
   choices.vehicles = !options.no_vehicle;
@@ -337,11 +337,11 @@ int run(const SimOptions& options) {
     if (dds) dds->step(k, now, autopilot);
     if (clouds) clouds->step(now, autopilot);
   };
-  const std::unique_ptr<sim::flight::Simulator> simulator =
+  const std::unique_ptr<sim::simulator::Simulator> simulator =
       make_simulator(scenario, choices, {publish, {&log_sink}, on_step});
   if (scenario.sensing.scan && !options.no_vehicle) clouds.emplace(options, *simulator);
   if (!options.log.empty())  // what another simulator writes is left alone where that has the port
-    log = std::make_unique<log::FlightLog>(options.log, cli::scenario_header(scenario, options.common.seed, settings));
+    log = std::make_unique<log::FlightLog>(options.log, runs::scenario_header(scenario, options.common.seed, settings));
   log_sink.write_to(log.get());
   introduce(scenario, options, *background);
   run_until_the_end(*simulator, options, *background, writer.get());
@@ -365,7 +365,7 @@ cli::Subcommand add_sim(const cli::Parser& jink) {
   const auto options = std::make_shared<SimOptions>();
   app.add_option("SCENARIO", options->scenario, "scenario file").required();
   cli::Option speed = app.add_option("--speed", options->speed, "simulated seconds in a second, 0.5 to 20")
-                          .check(cli::number_in(0.5, 20.0))
+                          .check(cli::number_in({0.5, 20.0}))
                           .show_default();
   app.add_flag("--lockstep", options->lockstep,
                "as fast as possible; but while a vehicle is armed in OFFBOARD, after every 20 ms of simulated time "
@@ -390,7 +390,7 @@ cli::Subcommand add_sim(const cli::Parser& jink) {
       .show_default();
   app.add_flag("--no-tracks", options->no_tracks, "vehicle alone: another writer publishes the obstacles");
   app.add_option("--domain", options->domain, "DDS domain, 0 to 232")
-      .transform(cli::whole_number(0, 232))
+      .transform(cli::whole_number({0, 232}))
       .show_default();
   app.add_option("--tracks-namespace", options->tracks_namespace,
                  "before the topic of the obstacles: uav_1 means rt/uav_1/jink/obstacle_tracks");
@@ -398,14 +398,14 @@ cli::Subcommand add_sim(const cli::Parser& jink) {
                  "folder with the keys of a DDS enclave, as SROS 2 lays them out");
   app.add_option("--instance", options->instance,
                  "N: ports 14580+N to 14540+N, MAVLink system N+1; 0 to 9; further vehicles take N+1 and so on")
-      .transform(cli::whole_number(0, 9))
+      .transform(cli::whole_number({0, 9}))
       .show_default();
   app.add_option("--duration", options->duration, "end after so many simulated seconds (default: at Ctrl-C)")
-      .check(cli::number_in(0.1, 1e6));
+      .check(cli::number_in({0.1, 1e6}));
   app.add_option("--boot-clock", options->boot_clock,
                  "seconds of the autopilot's clock, by which its messages are stamped, in a simulated one, 0.9 to 1.1 "
                  "(default: 0.987, PX4 SITL's against the wall; 1 with --lockstep)")
-      .check(cli::number_in(0.9, 1.1));
+      .check(cli::number_in({0.9, 1.1}));
   app.add_option("--log", options->log, "write a flight log of the truth (JSON Lines)").check(cli::writable_file());
   options->common.add_to(app);
   app.option("--json").check(cli::writable_file());

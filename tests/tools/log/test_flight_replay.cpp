@@ -17,8 +17,8 @@
 #include "sim/flight/closed_loop.hpp"
 #include "tests/support/repetitions.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tools/cli/summaries.hpp"
 #include "tools/log/flight_log.hpp"
+#include "tools/runs/summaries.hpp"
 
 namespace jink::tools::log {
 namespace {
@@ -34,7 +34,7 @@ std::array<std::string, 2> first_lines(const std::filesystem::path& file) {
 std::filesystem::path fly(const support::Folder& folder, const config::Scenario& scenario, int threads) {
   const auto file = folder.path() / (scenario.name + std::to_string(threads) + ".jsonl");
   const config::Settings settings;
-  FlightLog log(file, cli::scenario_header(scenario, 5, settings), {.wait = true});
+  FlightLog log(file, runs::scenario_header(scenario, 5, settings), {.wait = true});
   sim::flight::ClosedLoopOptions options;
   options.seed = 5;
   options.threads = threads;

@@ -12,12 +12,12 @@
 #include "config/scenario_writer.hpp"
 #include "sim/families/families.hpp"
 #include "sim/families/recorded.hpp"
-#include "tools/cli/summaries.hpp"
 #include "tools/lab/arena/results.hpp"
 #include "tools/lab/arena/tiers.hpp"
 #include "tools/lab/baselines/registry.hpp"
 #include "tools/lab/oracle/feasibility.hpp"
 #include "tools/log/flight_log.hpp"
+#include "tools/runs/summaries.hpp"
 
 namespace jink::tools::lab::arena {
 namespace {
@@ -169,7 +169,7 @@ void save_failure(const FailureOptions& failure, const Job& job, const config::S
   Stopper stopper(stop);
   log::FlightLogOptions in_virtual_time;
   in_virtual_time.wait = true;
-  nlohmann::ordered_json header = cli::scenario_header(scenario, job.world.seed, failure.settings);
+  nlohmann::ordered_json header = runs::scenario_header(scenario, job.world.seed, failure.settings);
   header["pilot"] = job.pilot;
   log::FlightLog log(folder / "flight.jsonl", std::move(header), in_virtual_time);
   options.truth_observers = {&stopper, &log};

@@ -262,7 +262,7 @@ cli::Subcommand add_arena(const cli::Parser& jink) {
                  "how well obstacles and the vehicle itself are known, A,B or all: " + names(arena::tiers()))
       .show_default();
   app.add_option("--runs", options->runs, "worlds of each family, each flown by every pilot in every tier")
-      .transform(cli::whole_number(1, campaign::kMostRuns))
+      .transform(cli::whole_number({1, campaign::kMostRuns}))
       .show_default();
   app.add_option("--out", options->out, "folder for the results").check(cli::some_name()).show_default();
   app.add_flag("--resume", options->resume, "go on with what is in --out; all other options as before");

@@ -145,7 +145,7 @@ cli::Subcommand add_study(const cli::Parser& jink) {
   app.add_option("--runs", options->runs,
                  fmt::format("runs of each variant, with seeds of their own (default: {}, or {} with --quick)", kRuns,
                              kQuickRuns))
-      .transform(cli::whole_number(1, study::kMostStudyRuns));
+      .transform(cli::whole_number({1, study::kMostStudyRuns}));
   app.add_flag("--quick", options->quick,
                "a first look in about a minute: few runs, Tables 13 and 14 without their largest cells");
   app.add_option("--out", options->out, "folder for the results").check(cli::some_name()).show_default();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The simulator whole, over loopback sockets on free ports, in virtual time: several vehicles in one world.
-#include "sim/flight/simulator.hpp"
+#include "sim/simulator/simulator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "tests/sim/examples.hpp"
 #include "tests/sim/mavlink/loopback_companion.hpp"
 
-namespace jink::sim::flight {
+namespace jink::sim::simulator {
 namespace {
 
 config::Scenario two_vehicles() {
@@ -138,7 +138,7 @@ TEST(Simulator, VehiclesThatCollideFallAndBothHaveFailed) {
   ASSERT_TRUE(stage.run(40.0, starts, [&] { return stage.simulator->clock_runs(); }));
   EXPECT_FALSE(stage.simulator->failed());
   ASSERT_TRUE(stage.run(20.0, {Vec3(0, 1.5, 1.5), Vec3(0, 1.5, 1.5)}, [&] { return stage.simulator->failed(); }));
-  const std::vector<VehicleReport> reports = stage.simulator->reports();
+  const std::vector<flight::VehicleReport> reports = stage.simulator->reports();
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(reports[k].flight.outcome, bridge::supervisor::Outcome::kCollision);
     EXPECT_LT(reports[k].min_clearance, 0.0);
@@ -146,7 +146,7 @@ TEST(Simulator, VehiclesThatCollideFallAndBothHaveFailed) {
   }
   EXPECT_TRUE(stage.said("collision: COLLISION: vehicle 0: hit vehicle 1")) << stage.events.back();
   EXPECT_TRUE(stage.said("collision: COLLISION: vehicle 1: hit vehicle 0"));
-  EXPECT_EQ(worst(reports), bridge::supervisor::Outcome::kCollision);
+  EXPECT_EQ(flight::worst(reports), bridge::supervisor::Outcome::kCollision);
 }
 
 TEST(Simulator, OneVehicleMayReachWhileAnotherIsHit) {
@@ -156,7 +156,7 @@ TEST(Simulator, OneVehicleMayReachWhileAnotherIsHit) {
   const std::vector<std::optional<Vec3>> starts{scenario.start, scenario.vehicles[0].start};
   ASSERT_TRUE(stage.run(40.0, starts, [&] { return stage.simulator->clock_runs(); }));
   stage.run(12.0, {scenario.target, scenario.vehicles[0].target}, [] { return false; });
-  const std::vector<VehicleReport> reports = stage.simulator->reports();
+  const std::vector<flight::VehicleReport> reports = stage.simulator->reports();
   EXPECT_EQ(reports[0].flight.outcome, bridge::supervisor::Outcome::kReached) << reports[0].flight.reason;
   EXPECT_EQ(reports[1].flight.outcome, bridge::supervisor::Outcome::kCollision) << reports[1].flight.reason;
   EXPECT_FALSE(stage.simulator->autopilot(0).crashed());
@@ -381,4 +381,4 @@ TEST(Simulator, InLockstepALateSetpointIsAnAnswer) {
 }
 
 }  // namespace
-}  // namespace jink::sim::flight
+}  // namespace jink::sim::simulator

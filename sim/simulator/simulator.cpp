@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/flight/simulator.hpp"
+#include "sim/simulator/simulator.hpp"
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "sim/faults/vehicle_faults.hpp"
 
-namespace jink::sim::flight {
+namespace jink::sim::simulator {
 namespace {
 
 constexpr double kPatience = 15.0;       // s, that a flight takes to its start without a word
@@ -158,12 +158,12 @@ void Simulator::watch_faults() {
 /// What the true motion since the last step means. A collision stops the motors, as it would.
 void Simulator::judge() {
   if (!judge_) return;
-  std::vector<JudgedVehicle> now;
+  std::vector<flight::JudgedVehicle> now;
   for (const Vehicle& vehicle : vehicles_) {
     const vehicle::Motion& motion = vehicle.autopilot.true_motion();
     now.push_back({motion.position, motion.velocity, vehicle.autopilot.mode() == vehicle::FlightMode::kOffboard});
   }
-  for (const Verdict& verdict : judge_->watch(scenario_time(), clock_runs(), now)) {
+  for (const flight::Verdict& verdict : judge_->watch(scenario_time(), clock_runs(), now)) {
     const std::string text = named(verdict.vehicle, verdict.reason);
     switch (verdict.outcome) {
       case bridge::supervisor::Outcome::kCollision:
@@ -210,9 +210,9 @@ void Simulator::tell_truth() {
   for (SimulatorObserver* observer : parts_.observers) observer->on_truth(scenario_time(), now, world_);
 }
 
-std::vector<VehicleReport> Simulator::reports() const {
+std::vector<flight::VehicleReport> Simulator::reports() const {
   if (!judge_) return {};
-  std::vector<VehicleReport> reports = judge_->reports();
+  std::vector<flight::VehicleReport> reports = judge_->reports();
   for (std::size_t k = 0; k < reports.size(); ++k) {
     bridge::companion::FlightSummary& flight = reports[k].flight;
     if (flight.outcome != bridge::supervisor::Outcome::kNone) continue;
@@ -227,7 +227,7 @@ std::vector<VehicleReport> Simulator::reports() const {
 bool Simulator::failed() const {
   if (!judge_) return false;
   const auto& reports = judge_->reports();
-  return std::any_of(reports.begin(), reports.end(), [](const VehicleReport& r) { return r.failed(); });
+  return std::any_of(reports.begin(), reports.end(), [](const flight::VehicleReport& r) { return r.failed(); });
 }
 
-}  // namespace jink::sim::flight
+}  // namespace jink::sim::simulator

@@ -20,7 +20,7 @@
 #include "sim/world/truth_observer.hpp"
 #include "sim/world/world.hpp"
 
-namespace jink::sim::flight {
+namespace jink::sim::simulator {
 
 class SimulatorObserver : public world::TruthObserver {
  public:
@@ -81,7 +81,7 @@ class Simulator {
   [[nodiscard]] const vehicle::Autopilot& autopilot(std::size_t k) const { return vehicles_[k].autopilot; }
   [[nodiscard]] const mavlink::MavlinkEndpoint& endpoint(std::size_t k) const { return *vehicles_[k].endpoint; }
   /// What became of each vehicle so far; `aborted` with a reason for one that has not come to its target.
-  [[nodiscard]] std::vector<VehicleReport> reports() const;
+  [[nodiscard]] std::vector<flight::VehicleReport> reports() const;
   /// A vehicle hit something or left the world.
   [[nodiscard]] bool failed() const;
 
@@ -121,10 +121,10 @@ class Simulator {
   faults::FaultTimeline timeline_;
   faults::TrackFaults track_faults_;
   std::vector<Vehicle> vehicles_;
-  std::optional<SimulatorJudge> judge_;
+  std::optional<flight::SimulatorJudge> judge_;
   std::optional<double> clock_start_;
   std::int64_t steps_ = 0;
   double now_ = 0.0;
 };
 
-}  // namespace jink::sim::flight
+}  // namespace jink::sim::simulator

@@ -11,7 +11,7 @@
 #include "config/scenario.hpp"
 #include "sim/flight/simulator_judge.hpp"
 
-namespace jink::tools::cli {
+namespace jink::tools::runs {
 
 /// `kind` is "scenario" or "mission". `min_clearance` is null where the true motion is not known or there is no
 /// obstacle.
@@ -34,4 +34,4 @@ nlohmann::ordered_json scenario_header(const config::Scenario& scenario, std::ui
 /// A number for JSON: null where it is not finite.
 nlohmann::ordered_json finite_or_null(double value);
 
-}  // namespace jink::tools::cli
+}  // namespace jink::tools::runs

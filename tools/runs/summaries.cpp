@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/cli/summaries.hpp"
+#include "tools/runs/summaries.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@
 #include "sim/world/world.hpp"
 #include "tools/log/flight_log.hpp"
 
-namespace jink::tools::cli {
+namespace jink::tools::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -167,4 +167,4 @@ Json scenario_header(const config::Scenario& scenario, std::uint64_t seed, const
   return header;
 }
 
-}  // namespace jink::tools::cli
+}  // namespace jink::tools::runs
