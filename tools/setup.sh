@@ -9,6 +9,7 @@
 #     bench       tools/bench.sh
 #     package     tools/package.sh
 #     lintian     tests/package/check_package.py
+#     python      tools/wheel.sh
 #     sanitizers  tools/fuzz.sh and the preset asan
 #     arm64       the preset arm64: cross-compiler, qemu, and in build/sysroot-arm64 what the groups beside it link
 set -euo pipefail
@@ -35,6 +36,7 @@ for group in "$@"; do
   bench) packages+=(libbenchmark-dev) ;;
   package) packages+=(dpkg-dev file) ;;
   lintian) packages+=(lintian) ;;
+  python) packages+=(python3-dev); requirements+=(tools/requirements-python.txt) ;;
   sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
   arm64) packages+=(g++-aarch64-linux-gnu qemu-user-static) foreign=arm64 ;;
   *) echo "setup: unknown group of packages: $group" >&2; exit 2 ;;
