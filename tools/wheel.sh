@@ -10,10 +10,11 @@ tools/setup.sh python
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache} CMAKE_C_COMPILER_LAUNCHER=${CMAKE_C_COMPILER_LAUNCHER:-ccache}
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
 export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
+export CMAKE_ARGS=${JINK_CMAKE_ARGS:-}
 rm -rf build/wheel; mkdir -p build/wheel
 for python in "$@"; do
   "$python" -m venv --clear build/wheel/venv
-  build/wheel/venv/bin/pip wheel -q --disable-pip-version-check --no-deps -w build/wheel/made . ${JINK_CMAKE_ARGS:+-C "cmake.args=$JINK_CMAKE_ARGS"}
+  build/wheel/venv/bin/pip wheel -q --disable-pip-version-check --no-deps -w build/wheel/made .
 done
 PATH=$PWD/.venv/bin:$PATH .venv/bin/auditwheel repair -w build/wheel build/wheel/made/*.whl
 rm -rf build/wheel/venv build/wheel/made
