@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds the Python package and makes it fit for other machines: build/wheel/*.whl.
-# tests/python/check_wheel.py tries it.
+# tests/python/check_wheel.sh tries it.
 #   tools/wheel.sh [PYTHON...]      /usr/bin/python3 unless told; from 3.12 on one wheel is for all later ones
 set -euo pipefail
 cd "$(dirname "$0")/.."

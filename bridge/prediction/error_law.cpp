@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "planner/base/portable_math.hpp"
 
 namespace jink::bridge::prediction {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kGrowth = 1.25;      // of the radii, from shell to shell
 constexpr double kAssumed = 100.0;    // movers seen, that what is assumed counts for
 constexpr double kMostSeen = 5000.0;  // from which on the oldest count less and less
 constexpr double kScale = 0.6;        // of the heavy-tailed law
+constexpr int kPieces = 8;            // of a shell, that densities are summed over
 
 using Radii = std::array<double, ErrorLaw::kShells>;
 
@@ -35,37 +37,40 @@ double share_within(double s, double distance, double radius) {
 
 }  // namespace
 
-template <typename Within>
-ErrorLaw ErrorLaw::of(Within within) {
+// By Simpson's rule, which is plain arithmetic: the same bits on every machine.
+template <typename Density>
+ErrorLaw ErrorLaw::of(Density density) {
   ErrorLaw law;
-  double before = 0.0;
+  double inner = 0.0;
   for (std::size_t i = 0; i < kShells; ++i) {
-    const double by = i + 1 < kShells ? within(kOuter[i]) : 1.0;
-    law.seen_[i] = kAssumed * (by - before);
-    before = by;
+    const double step = (kOuter[i] - inner) / (2.0 * kPieces);
+    for (int n = 0; n < kPieces; ++n) {
+      const double from = inner + 2.0 * n * step;
+      law.seen_[i] += step / 3.0 * (density(from) + 4.0 * density(from + step) + density(from + 2.0 * step));
+    }
+    law.all_ += law.seen_[i];
+    inner = kOuter[i];
   }
+  for (double& seen : law.seen_) seen *= kAssumed / law.all_;
   law.all_ = kAssumed;
   return law;
 }
 
 ErrorLaw ErrorLaw::normal() {
-  return of([](double u) {
-    return std::erf(u / std::numbers::sqrt2) - std::sqrt(2.0 / std::numbers::pi) * u * std::exp(-0.5 * u * u);
-  });
+  return of([](double u) { return u * u * planner::base::exponential(-0.5 * u * u); });
 }
 
 ErrorLaw ErrorLaw::heavy_tailed() {
   return of([](double u) {
-    const double x = u / (kScale * std::numbers::sqrt3);
-    const double one = 1.0 + x * x;
-    return 2.0 / std::numbers::pi * (std::atan(x) + x * (x * x - 1.0) / (one * one));
+    const double one = 1.0 + u * u / (3.0 * kScale * kScale);
+    return u * u / (one * one * one);
   });
 }
 
 // Noise is part of what was measured: of its mean square where the error is large beside it, else of what is stated.
 void ErrorLaw::saw(double error, double sigma, double noise) {
   const double alone = std::sqrt(std::max(0.0, error * error - 3.0 * noise * noise)) / sigma;
-  const double deviations = std::max(alone, error / std::hypot(sigma, noise));
+  const double deviations = std::max(alone, error / planner::base::hypotenuse(sigma, noise));
   const auto shell = std::lower_bound(kOuter.begin(), kOuter.end() - 1, deviations);
   seen_[static_cast<std::size_t>(shell - kOuter.begin())] += 1.0;
   all_ += 1.0;

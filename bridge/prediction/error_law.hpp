@@ -30,8 +30,8 @@ class ErrorLaw {
   [[nodiscard]] double contact_probability(double distance, double radius, double sigma) const;
 
  private:
-  template <typename Within>
-  static ErrorLaw of(Within within);
+  template <typename Density>
+  static ErrorLaw of(Density density);  // by the radius, in whatever unit
 
   std::array<double, kShells> seen_{};
   double all_ = 0.0;
