@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -137,6 +139,19 @@ void ParticipantNames::on_participant_discovery(dds::DomainParticipant* own, rtp
   names_[prefix] = name.empty() ? "?" : name;
 }
 
+namespace {
+
+// Fast DDS 2.9 calls the readers of the same process itself, also one that is being matched by then: once in some
+// hundred times a participant that ended beside another one crashed, in StatefulWriter::intraprocess_gap.
+void send_to_own_process_as_to_others() {
+  using eprosima::fastrtps::xmlparser::XMLProfileManager;
+  eprosima::fastrtps::LibrarySettingsAttributes settings = XMLProfileManager::library_settings();
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  XMLProfileManager::library_settings(settings);
+}
+
+}  // namespace
+
 DdsParticipant::Impl::Impl(int domain, const std::string& name, const std::filesystem::path& security,
                            ParticipantNames* discovery)
     : domain_(domain), names_(discovery != nullptr ? discovery : &own_names_) {
@@ -145,6 +160,7 @@ DdsParticipant::Impl::Impl(int domain, const std::string& name, const std::files
   }
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();  // a user's own transports, by FASTRTPS_DEFAULT_PROFILES_FILE
+  send_to_own_process_as_to_others();
   dds::DomainParticipantQos qos = factory->get_default_participant_qos();
   qos.name(name);
   auto& transport = qos.transport();
