@@ -234,6 +234,7 @@ TEST_P(Fcp, SmallSpheresInTheBox) {
     expect_limits(scenario, 0.2, 3.0, 0.7);
     EXPECT_EQ(scenario.start, Vec3(0, 0, 1));
     EXPECT_EQ(scenario.target, Vec3(5, 5, 6.4));
+    EXPECT_EQ(scenario.acceptance_radius, 0.8);
     EXPECT_EQ(scenario.time_limit, 25.0);
     EXPECT_EQ(scenario.world->min, Vec3(-3, -3, 0));
     EXPECT_EQ(scenario.world->max, Vec3(7, 7, 8));

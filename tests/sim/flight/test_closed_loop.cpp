@@ -136,6 +136,16 @@ void expect_reached(const std::string& name, std::uint64_t seed) {
   EXPECT_EQ(flown.result.flight.deadline_misses, 0U);
 }
 
+TEST(ClosedLoop, ATargetIsAcceptedFromNearBy) {
+  const Flown all = fly(straight(), quick_settings());
+  config::Scenario scenario = straight();
+  scenario.acceptance_radius = 2.0;
+  const Flown flown = fly(scenario, quick_settings());
+  EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kReached) << flown.result.flight.reason;
+  EXPECT_NEAR(flown.result.flight.path_length, 4.0, 0.3);
+  EXPECT_LT(flown.result.flight.flight_time, all.result.flight.flight_time - 0.5);
+}
+
 TEST(ClosedLoop, ReachesTheTargetOfTheDefaultScenario) {
   for (const std::uint64_t seed : support::repetitions({1U, 2U, 3U, 4U, 5U})) expect_reached("crossing", seed);
 }
