@@ -39,9 +39,7 @@ void add_vehicle(nb::module_& module) {
 /// The path from time t on, whose times count from there.
 TimedPath after(const TimedPath& path, double t) {
   if (path.empty()) throw std::invalid_argument("the path has no points");
-  TimedPath rest = remainder(path, t);
-  for (TimedPoint& point : rest) point.t -= t;
-  return rest;
+  return later(path, t);
 }
 
 void add_path(nb::module_& module) {

@@ -74,8 +74,7 @@ class Flight {
     const planner::base::TimedPoint next = planner::base::sample(path, kPeriod);
     request_.position = next.position;
     request_.velocity = next.velocity;
-    previous_ = planner::base::remainder(path, kPeriod);
-    for (planner::base::TimedPoint& point : previous_) point.t -= kPeriod;
+    previous_ = planner::base::later(path, kPeriod);
     if ((request_.position - request_.target).norm() > kArrived) return;
     ++targets;
     std::swap(request_.target, other_target_);

@@ -29,9 +29,10 @@ void refuge(benchmark::State& state) {
   request.margin = 0.35;
   const planner::base::TimedPath stays{{0.0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   bridge::companion::Retreat retreat{planner::base::HorizonSettings{}};
+  const bridge::prediction::LawsByKind laws;
   double now = 0.0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(retreat.choose(now, request, stays, movers, {}));
+    benchmark::DoNotOptimize(retreat.choose(now, request, stays, movers, laws));
     now += 0.05;
   }
 }

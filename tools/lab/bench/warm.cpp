@@ -57,10 +57,9 @@ struct Moment {
   }
   void fly(const sim::world::World& world, const planner::base::TimedPath& path) {
     t += kReplan;
-    previous = planner::base::remainder(path, kReplan);
+    previous = planner::base::later(path, kReplan);
     request.position = previous.front().position;
     request.velocity = previous.front().velocity;
-    for (planner::base::TimedPoint& point : previous) point.t -= kReplan;
     look(world);
   }
 };
