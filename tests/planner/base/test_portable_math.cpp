@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "planner/base/random.hpp"
 
@@ -93,8 +94,8 @@ TEST(Hypotenuse, IsWithinOneUnitInTheLastPlace) {
     const double size = std::exp(random.uniform(-300.0, 300.0));
     const double x = size * random.uniform(-1.0, 1.0);
     const double y = size * random.uniform(-1.0, 1.0) * (i % 2 == 0 ? 1.0 : std::exp(random.uniform(-40.0, 0.0)));
-    const double exact =
-        static_cast<double>(std::sqrt(static_cast<long double>(x) * x + static_cast<long double>(y) * y));
+    const auto [a, b] = std::pair<long double, long double>(x, y);
+    const auto exact = static_cast<double>(std::sqrt(a * a + b * b));
     EXPECT_LE(std::abs(hypotenuse(x, y) - exact), std::nextafter(exact, 1e300) - exact) << x << " " << y;
   }
 }
