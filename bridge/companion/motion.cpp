@@ -102,7 +102,8 @@ bool MotionControl::known(double now, const vehicle::VehicleState& state) const 
 }
 
 bool MotionControl::lost(double now, const vehicle::VehicleState& state) const {
-  return known(now, state) && (error(state) > kLostReference || drawn_.position.norm() > share(now) * kLostReference);
+  return known(now, state) &&
+         (error(state) > kLostReference || drawn_.position.head<2>().norm() > share(now) * kLostReference);
 }
 
 void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
