@@ -81,7 +81,7 @@ void VehicleResponse::learn(double dt, const Vec3& lacking) {
 void VehicleResponse::observe(double t, const Vec3& position, const Vec3& velocity, bool learns) {
   if (state_ && t <= state_->t) return;
   if (!state_ || t > state_->t + kLongestSilence || sent_count_ == 0) {
-    state_.emplace();
+    state_ = State{};
     state_->thrust = {drag_ * velocity, drag_ * velocity};
     unexplained_.setZero();
   } else {

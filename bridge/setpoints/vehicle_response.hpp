@@ -15,8 +15,8 @@ namespace jink::bridge::setpoints {
 /// PX4's position and velocity loop with its default gains, and a thrust that follows them with two lags as its SITL's
 /// does: of what was sent within the last third of a second, most has not been answered yet. Drag and damping, the
 /// share of an acceleration that the velocity loop takes off again, are learned from what it accelerates with (least
-/// mean squares, normalised); what is left then (wind, other gains) counts as an acceleration that
-/// stays for a while. Velocities are the vehicle's own, in ENU, times the companion's clock. Not thread-safe.
+/// mean squares, normalised); what is left then (wind, other gains) counts as an acceleration that stays for a while.
+/// Velocities are the vehicle's own, in ENU, times the companion's clock. Not thread-safe.
 class VehicleResponse {
  public:
   /// To begin with, 1/s and a share, and the largest speed on the level, m/s.
