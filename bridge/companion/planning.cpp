@@ -133,7 +133,7 @@ bool Planning::is_seen(const planner::base::TimedPath& path) const {
   return sight_.leaves_seen(path) == planner::base::kInfinity;
 }
 
-// From where the path ends straight down to the ground, as far ahead as plans look.
+// From where the path ends straight down to the ground, from then on as far ahead as plans look.
 bool Planning::lands_free(const PlanResult& result) const {
   const planner::base::HorizonSettings& horizon = settings_.horizon;
   const prediction::Obstacles obstacles = obstacles_of(result.job, horizon);
@@ -142,14 +142,14 @@ bool Planning::lands_free(const PlanResult& result) const {
   const double sinking = std::max(0.1, (above.position.z() - mission_.ground) / kSinking);
   const Vec3 below = above.position - Vec3(0.0, 0.0, kSinking * sinking);
   path.push_back({above.t + sinking, below, Vec3::Zero(), Vec3::Zero()});
-  path.push_back({std::max(horizon.time, above.t + sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()});
+  path.push_back({above.t + std::max(horizon.time, sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()});
   return planner::verify::verify({path,
                                   obstacles.tracks,
                                   0.0,
                                   mission_.vehicle.radius,
                                   {},
                                   horizon.acceleration_trust,
-                                  horizon.time,
+                                  above.t + horizon.time,
                                   obstacles.paths,
                                   {},
                                   obstacles.standing})

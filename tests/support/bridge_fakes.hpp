@@ -79,7 +79,8 @@ class FakePlanner final : public companion::PlannerTask {
     result.missed = now > result.job.start + 1e-9;
     if (valid) {
       result.plan.status = status;
-      result.plan.path = straight(result.job.request);
+      planner::base::TimedPath& path = result.plan.path = straight(result.job.request);
+      if (stays > 0.0) path.push_back({path.back().t + stays, path.back().position, Vec3::Zero(), Vec3::Zero()});
     }
     return result;
   }
@@ -101,6 +102,7 @@ class FakePlanner final : public companion::PlannerTask {
   planner::verify::PlanStatus status = planner::verify::PlanStatus::kReaches;
   double promised = 0.04, takes = 0.04;
   double speed = 2.0;
+  double stays = 0.0;  // s, that a path goes on at its end
   bool silent = false, valid = true, throws = false, throws_at_start = false;
 
  private:

@@ -518,21 +518,26 @@ TEST(Companion, HoldsClearOfATargetUntilItStaysFree) {
       << loop.companion.summary().reason;
 }
 
-// The target itself stays free.
+// The target itself stays free; however long the plan that ends there is.
 TEST(Companion, DoesNotLandOnWhatIsBelow) {
-  config::Mission m = Loop::mission();
-  m.arrival = config::Arrival::kLand;
-  m.waypoints = {{1, 0, 2}};
-  Loop loop(m);
-  loop.planner.speed = 0.4;
-  loop.seen = {{.id = 3, .position = {1, 0, 0.5}, .radius = 0.4}};
-  loop.airborne().fly();
-  loop.run(8.0);
-  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
-  EXPECT_EQ(loop.recorder.count("arrived"), 1);
-  loop.seen = {{.id = 3, .position = {1, 5, 0.5}, .radius = 0.4}};
-  loop.run(2.0);
-  EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
+  for (const double stays : {0.0, 5.5}) {
+    SCOPED_TRACE(stays);
+    config::Mission m = Loop::mission();
+    m.arrival = config::Arrival::kLand;
+    m.min_height = stays > 0.0 ? 2.0 : 1.0;  // no plan leads further down
+    m.waypoints = {{1, 0, 2}};
+    Loop loop(m);
+    loop.planner.speed = 0.4;
+    loop.planner.stays = stays;
+    loop.seen = {{.id = 3, .position = {1, 0, 0.5}, .radius = 0.4}};
+    loop.airborne().fly();
+    loop.run(8.0);
+    EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
+    EXPECT_EQ(loop.recorder.count("arrived"), 1);
+    loop.seen = {{.id = 3, .position = {1, 5, 0.5}, .radius = 0.4}};
+    loop.run(3.0);
+    EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
+  }
 }
 
 TEST(Companion, LandsWhereTheMissionSaysSo) {
