@@ -21,7 +21,7 @@ constexpr double kSlack = 0.9;             // of a setpoint's period, after whic
 constexpr double kTakeoffTolerance = 0.5;  // m
 constexpr double kDrawn = 0.8;  // s, time constant with which it is forgotten how far the reference was drawn
 
-constexpr double kLeftToAutopilot = 0.1;        // m, that the vehicle is beside its reference and plans do not mend
+constexpr double kLeftToAutopilot = 0.04;       // m, that the vehicle is beside its reference and plans do not mend
 constexpr double kSpeedLeftToAutopilot = 0.25;  // m/s, likewise
 
 using Motion = supervisor::Decision::Motion;
