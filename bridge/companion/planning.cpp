@@ -133,23 +133,25 @@ bool Planning::is_seen(const planner::base::TimedPath& path) const {
   return sight_.leaves_seen(path) == planner::base::kInfinity;
 }
 
-// From where the path ends straight down to the ground, from then on as far ahead as plans look.
+// From where the path ends straight down to the ground, as far ahead as plans look: from now on, since who stays there
+// is there already and sinks at once, however long the path is.
 bool Planning::lands_free(const PlanResult& result) const {
   const planner::base::HorizonSettings& horizon = settings_.horizon;
   const prediction::Obstacles obstacles = obstacles_of(result.job, horizon);
-  planner::base::TimedPath path = result.plan.path;
-  const planner::base::TimedPoint above = path.back();
-  const double sinking = std::max(0.1, (above.position.z() - mission_.ground) / kSinking);
-  const Vec3 below = above.position - Vec3(0.0, 0.0, kSinking * sinking);
-  path.push_back({above.t + sinking, below, Vec3::Zero(), Vec3::Zero()});
-  path.push_back({above.t + std::max(horizon.time, sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()});
+  const Vec3& above = result.plan.path.back().position;
+  const double sinking = std::max(0.1, (above.z() - mission_.ground) / kSinking);
+  const Vec3 below = above - Vec3(0.0, 0.0, kSinking * sinking);
+  const planner::base::TimedPath path{
+      {0.0, above, Vec3::Zero(), Vec3::Zero()},
+      {sinking, below, Vec3::Zero(), Vec3::Zero()},
+      {std::max(horizon.time, sinking) + horizon.step, below, Vec3::Zero(), Vec3::Zero()}};
   return planner::verify::verify({path,
                                   obstacles.tracks,
                                   0.0,
                                   mission_.vehicle.radius,
                                   {},
                                   horizon.acceleration_trust,
-                                  above.t + horizon.time,
+                                  horizon.time,
                                   obstacles.paths,
                                   {},
                                   obstacles.standing})

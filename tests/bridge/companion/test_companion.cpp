@@ -539,7 +539,7 @@ TEST(Companion, DoesNotLandOnWhatIsBelow) {
     EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
     EXPECT_EQ(loop.recorder.count("arrived"), 1);
     loop.seen = {{.id = 3, .position = {1, 5, 0.5}, .radius = 0.4}};
-    loop.run(3.0);
+    loop.run(2.0);
     EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
   }
 }

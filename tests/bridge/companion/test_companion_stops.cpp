@@ -228,6 +228,24 @@ TEST(CompanionStops, LandingComesDownByPlansFirst) {
   EXPECT_LT(loop.companion.summary().flight_time, 3.0);  // to the target; not the way down
 }
 
+// It sinks from where it is at once, though the plan that ends there has seconds to go.
+TEST(CompanionStops, LandsBehindWhatPassesBelowBeforeThePlanEnds) {
+  config::Mission mission = Loop::mission();
+  mission.waypoints = {{3, 0, 2}};
+  mission.min_height = 2.0;  // no plan leads further down
+  mission.arrival = config::Arrival::kLand;
+  Crossed loop(mission);
+  loop.planner.speed = 0.5;
+  loop.planner.stays = 5.5;
+  loop.meet(8.5, {3, 0, 0.8}, {0, 1.5, 0});
+  loop.airborne();
+  loop.fly_on(8.0);
+  EXPECT_NEAR(loop.link.telemetry.motion.value.position.x(), 3.0, 0.3);
+  EXPECT_NE(loop.link.requests.back(), vehicle::Command::kLand);
+  loop.fly_on(4.0);
+  EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
+}
+
 TEST(CompanionStops, AWaypointLowEnoughIsLandedFromAtOnce) {
   config::Mission mission = Loop::mission();
   mission.waypoints = {{4, 0, 1}};
