@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFirst = 0.1;        // deviations, the innermost shell's outer radius
 constexpr double kGrowth = 1.25;      // of the radii, from shell to shell
-constexpr double kAssumed = 100.0;    // movers seen, that what is assumed counts for
+constexpr double kAssumed = 40.0;     // movers seen, that what is assumed counts for
 constexpr double kMostSeen = 5000.0;  // from which on the oldest count less and less
 constexpr double kScale = 0.6;        // of the heavy-tailed law
 constexpr int kPieces = 8;            // of a shell, that densities are summed over

@@ -10,31 +10,32 @@ namespace {
 
 using Matrix3 = Eigen::Matrix3d;
 
-constexpr double kSteadyNoise = 0.02;       // m²/s³, of the steady model's acceleration
-constexpr double kTurningNoise = 12.0;      // m²/s⁵, of the turning model's jerk
-constexpr double kTurningSpread = 2.0;      // m/s², of the acceleration that a turn may begin with
-constexpr double kSojourn = 1.5;            // s, that an obstacle stays with a model on average
-constexpr double kSteadyAtFirst = 0.9;      // probability that a new track does not turn: noise looks like a turn then
-constexpr double kGate = 45.0;              // squared Mahalanobis distance that noise has once in ten million
-constexpr double kLeastProbability = 0.02;  // of a model
-constexpr double kLeastSigma = 0.01;        // m, m/s
-constexpr double kLongest = 1.0;            // s, between measurements, after which the estimate begins anew
+constexpr std::size_t kTurning = 2;                 // the model; those before it are steady
+constexpr std::array kSteadyNoise = {0.002, 0.1};   // m²/s³, of their acceleration
+constexpr double kTurningNoise = 6.0;               // m²/s⁵, of the turning model's jerk
+constexpr double kTurningSpread = 1.0;              // m/s², of the acceleration that a turn may begin with
+constexpr double kSojourn = 5.0;                    // s, that an obstacle stays with a model on average
+constexpr std::array kAtFirst = {0.45, 0.45, 0.1};  // probabilities: noise of a new track looks like a turn
+constexpr double kGate = 45.0;                      // squared Mahalanobis distance that noise has once in ten million
+constexpr double kLeastProbability = 0.02;          // of a model
+constexpr double kLeastSigma = 0.01;                // m, m/s
+constexpr double kLongest = 1.0;                    // s, between measurements, after which the estimate begins anew
 
-Matrix3 transition(double dt, bool turning) {
+Matrix3 transition(double dt, std::size_t model) {
   Matrix3 f = Matrix3::Identity();
   f(0, 1) = dt;
-  f(0, 2) = turning ? 0.5 * dt * dt : 0.0;
-  f(1, 2) = turning ? dt : 0.0;
-  f(2, 2) = turning ? 1.0 : 0.0;
+  f(0, 2) = model == kTurning ? 0.5 * dt * dt : 0.0;
+  f(1, 2) = model == kTurning ? dt : 0.0;
+  f(2, 2) = model == kTurning ? 1.0 : 0.0;
   return f;
 }
 
-/// Of continuous white noise: in the acceleration of the steady model, in the jerk of the turning one.
-Matrix3 process_noise(double dt, bool turning) {
+/// Of continuous white noise: in the acceleration of the steady models, in the jerk of the turning one.
+Matrix3 process_noise(double dt, std::size_t model) {
   const double dt2 = dt * dt;
   const double dt3 = dt2 * dt;
   Matrix3 q = Matrix3::Zero();
-  if (turning) {
+  if (model == kTurning) {
     q << dt3 * dt2 / 20.0, dt2 * dt2 / 8.0, dt3 / 6.0,  //
         dt2 * dt2 / 8.0, dt3 / 3.0, dt2 / 2.0,          //
         dt3 / 6.0, dt2 / 2.0, dt;
@@ -43,7 +44,7 @@ Matrix3 process_noise(double dt, bool turning) {
   q(0, 0) = dt3 / 3.0;
   q(0, 1) = q(1, 0) = dt2 / 2.0;
   q(1, 1) = dt;
-  return kSteadyNoise * q;
+  return kSteadyNoise[model] * q;
 }
 
 }  // namespace
@@ -56,28 +57,30 @@ void ImmFilter::begin(const planner::base::Track& measured, const Noise& noise) 
     model.covariance(0, 0) = noise.position_variance;
     model.covariance(1, 1) = noise.velocity_variance;
   }
-  models_[1].covariance(2, 2) = kTurningSpread * kTurningSpread;
-  models_[0].probability = kSteadyAtFirst;
-  models_[1].probability = 1.0 - kSteadyAtFirst;
+  models_[kTurning].covariance(2, 2) = kTurningSpread * kTurningSpread;
+  for (std::size_t i = 0; i < kModels; ++i) models_[i].probability = kAtFirst[i];
   begun_ = true;
 }
 
-// Each model goes on from a mixture of both, as likely as they turn into one another.
+// Each model goes on from a mixture of all, as likely as they turn into one another.
 void ImmFilter::mix(double dt) {
-  const double stay = 0.5 + 0.5 * std::exp(-dt / kSojourn);
-  const std::array<Model, 2> before = models_;
-  for (std::size_t j = 0; j < 2; ++j) {
+  const double other = (1.0 - std::exp(-dt / kSojourn)) / kModels;
+  const std::array<Model, kModels> before = models_;
+  for (std::size_t j = 0; j < kModels; ++j) {
     Model& model = models_[j];
-    std::array<double, 2> share{};
-    for (std::size_t i = 0; i < 2; ++i) share[i] = (i == j ? stay : 1.0 - stay) * before[i].probability;
-    model.probability = share[0] + share[1];
-    model.state = (share[0] * before[0].state + share[1] * before[1].state) / model.probability;
-    model.covariance.setZero();
-    for (std::size_t i = 0; i < 2; ++i) {
+    model = {};
+    std::array<double, kModels> share{};
+    for (std::size_t i = 0; i < kModels; ++i) {
+      share[i] = (i == j ? 1.0 - (kModels - 1) * other : other) * before[i].probability;
+      model.probability += share[i];
+      model.state += share[i] * before[i].state;
+    }
+    model.state /= model.probability;
+    for (std::size_t i = 0; i < kModels; ++i) {
       const Matrix3 off = before[i].state - model.state;
       Matrix3 covariance = before[i].covariance + off * off.transpose() / 3.0;  // the axes' mean
-      // The steady model says nothing of the acceleration that a turn begins with.
-      if (i == 0 && j == 1) covariance(2, 2) += kTurningSpread * kTurningSpread;
+      // The steady models say nothing of the acceleration that a turn begins with.
+      if (i != kTurning && j == kTurning) covariance(2, 2) += kTurningSpread * kTurningSpread;
       model.covariance += share[i] / model.probability * covariance;
     }
   }
@@ -110,26 +113,31 @@ void ImmFilter::update(double dt, const planner::base::Track& measured) {
     return;
   }
   mix(dt);
-  std::array<Fit, 2> fits;
-  for (std::size_t i = 0; i < 2; ++i) {
+  std::array<Fit, kModels> fits;
+  Fit best{-planner::base::kInfinity, planner::base::kInfinity};
+  for (std::size_t i = 0; i < kModels; ++i) {
     Model& model = models_[i];
-    const Matrix3 f = transition(dt, i == 1);
+    const Matrix3 f = transition(dt, i);
     model.state = (f * model.state).eval();
-    model.covariance = (f * model.covariance * f.transpose() + process_noise(dt, i == 1)).eval();
+    model.covariance = (f * model.covariance * f.transpose() + process_noise(dt, i)).eval();
     fits[i] = correct(model, measured, noise);
+    best.log_likelihood = std::max(best.log_likelihood, fits[i].log_likelihood);
+    best.distance = std::min(best.distance, fits[i].distance);
   }
-  if (std::min(fits[0].distance, fits[1].distance) > kGate) {
+  if (best.distance > kGate) {
     begin(measured, noise);
     return;
   }
-  const double most = std::max(fits[0].log_likelihood, fits[1].log_likelihood);
   double sum = 0.0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    models_[i].probability *= std::exp(fits[i].log_likelihood - most);
+  for (std::size_t i = 0; i < kModels; ++i) {
+    models_[i].probability *= std::exp(fits[i].log_likelihood - best.log_likelihood);
     sum += models_[i].probability;
   }
-  for (Model& model : models_) model.probability = std::max(kLeastProbability, model.probability / sum);
-  const double total = models_[0].probability + models_[1].probability;
+  double total = 0.0;
+  for (Model& model : models_) {
+    model.probability = std::max(kLeastProbability, model.probability / sum);
+    total += model.probability;
+  }
   for (Model& model : models_) model.probability /= total;
 }
 

@@ -19,7 +19,8 @@ struct FlightLanes {
   PointLanes<kLanes> position,          ///< now, m
       velocity;                         ///< now, m/s
   PointLanes<kLanes> begin,             ///< the leg's first offset, m
-      drift,                            ///< the offset's change in a second, m/s
+      drift,                            ///< the offset's mean change in a second, m/s
+      onward,                           ///< what of that is along the axis
       wished;                           ///< the leg's last offset, m
 
   /// At the start of the horizon. Keeps references to both arguments' data.
@@ -50,6 +51,11 @@ struct FlightLanes {
       drift.x[i] = (wished.x[i] - begin.x[i]) * per_second;
       drift.y[i] = (wished.y[i] - begin.y[i]) * per_second;
       drift.z[i] = (wished.z[i] - begin.z[i]) * per_second;
+      const Vec3& axis = scene.frame.axis;
+      const double ahead = drift.x[i] * axis.x() + drift.y[i] * axis.y() + drift.z[i] * axis.z();
+      onward.x[i] = ahead * axis.x();
+      onward.y[i] = ahead * axis.y();
+      onward.z[i] = ahead * axis.z();
     }
   }
 
@@ -76,14 +82,15 @@ struct FlightLanes {
     const Vec3 base = scene.unobstructed[static_cast<std::size_t>(n)];
     const Vec3 forward = scene.speed[static_cast<std::size_t>(n) + 1] * scene.frame.axis;
     const double since = i * scene.step;
+    const double uneven = scene.uneven[static_cast<std::size_t>(n)];
     const Follower follower = scene.follower;
     for (std::size_t l = 0; l < kLanes; ++l) {
-      const double wx =
-          forward.x() + drift.x[l] + (base.x() + begin.x[l] + since * drift.x[l] - position.x[l]) * per_catch_up;
-      const double wy =
-          forward.y() + drift.y[l] + (base.y() + begin.y[l] + since * drift.y[l] - position.y[l]) * per_catch_up;
-      const double wz =
-          forward.z() + drift.z[l] + (base.z() + begin.z[l] + since * drift.z[l] - position.z[l]) * per_catch_up;
+      const double wx = forward.x() + drift.x[l] + uneven * onward.x[l] +
+                        (base.x() + begin.x[l] + since * drift.x[l] - position.x[l]) * per_catch_up;
+      const double wy = forward.y() + drift.y[l] + uneven * onward.y[l] +
+                        (base.y() + begin.y[l] + since * drift.y[l] - position.y[l]) * per_catch_up;
+      const double wz = forward.z() + drift.z[l] + uneven * onward.z[l] +
+                        (base.z() + begin.z[l] + since * drift.z[l] - position.z[l]) * per_catch_up;
       follower.advance(position.x[l], position.y[l], position.z[l], velocity.x[l], velocity.y[l], velocity.z[l], wx, wy,
                        wz);
     }

@@ -18,6 +18,9 @@
 namespace jink::planner::horizon {
 namespace {
 
+constexpr double kLonger =
+    4.0;  // m, by which a solution may be longer besides the band, which is narrow near the target
+
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
   o.sharing = s.sharing;
@@ -195,7 +198,8 @@ std::vector<optimizer::Cost> HorizonPlanner::quantized(std::span<const optimizer
   }
   std::vector<optimizer::Cost> result(costs.begin(), costs.end());
   for (optimizer::Cost& cost : result) {
-    if (cost.violation == 0.0) cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest);
+    if (cost.violation == 0.0)
+      cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest - kLonger);
   }
   return result;
 }

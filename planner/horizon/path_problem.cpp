@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLongestTail = 600.0;   // s, of straight flight after the horizon
 constexpr double kLongestLanding = 2.0;  // s, in which what has settled within the horizon comes to rest
+constexpr double kEven = 0.05;           // m/s, of unobstructed flight, from which on offsets change as it gets on
 constexpr int kLatestLanding = 3;        // steps after it has come near
 
 std::size_t index(int i) {
@@ -61,6 +62,7 @@ PathProblem::PathProblem(const base::HorizonSettings& settings)
   scene_.reach.resize(index(settings.waypoints));
   scene_.unobstructed.resize(index(scene_.steps + 1));
   scene_.speed.resize(index(scene_.steps + 1));
+  scene_.uneven.resize(index(scene_.steps));
   unobstructed_.resize(index(scene_.steps + 1));
   where_.resize(index(scene_.steps));
 }
@@ -107,6 +109,7 @@ void PathProblem::unobstructed_flight() {
     scene_.unobstructed[index(step)] = frame.origin + distance * frame.axis;
     scene_.speed[index(step)] = speed;
   }
+  change_offsets();
   scene_.cruise = cruise;
   scene_.unobstructed_time = time + (frame.length - distance) / cruise;
   for (int k = 0; k < settings_.waypoints; ++k) {
@@ -116,6 +119,21 @@ void PathProblem::unobstructed_flight() {
     scene_.reach[index(k)] = {std::max(settings_.arrival, std::min(frame.length, vehicle.max_speed * t) - along),
                               along + std::min(settings_.back_range, vehicle.max_speed * t),
                               std::min(settings_.lateral_range, vehicle.max_speed * t)};
+  }
+}
+
+// An offset along the axis changes as unobstructed flight gets on: evenly it would have a vehicle that sets out, and is
+// to be slower than that, fly back at first. At rest it changes evenly.
+void PathProblem::change_offsets() {
+  const double leg = scene_.steps_per_leg * settings_.step;
+  for (int n = 0; n < scene_.steps; ++n) {
+    const int i = n % scene_.steps_per_leg;
+    const double begun = unobstructed_[index(n - i)];
+    const double whole = unobstructed_[index(n - i + scene_.steps_per_leg)] - begun + kEven * leg;
+    const double since = i * settings_.step;
+    const double changed = (unobstructed_[index(n)] - begun + kEven * since) / whole * leg;
+    const double rate = (scene_.speed[index(n + 1)] + kEven) / whole * leg;
+    scene_.uneven[index(n)] = rate - 1.0 + (changed - since) * scene_.per_catch_up;
   }
 }
 

@@ -45,9 +45,9 @@ struct PathRequest {
 
 /// Decision variables: for each of K waypoints at times k·T/K three numbers in [-1, 1], its offset from where
 /// unobstructed flight (straight on, at cruise speed, braking for the target) would be then: along the path frame's
-/// axis (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly. The
-/// vehicle follows with bounded speed, climb and acceleration, so whatever the variables are, the motion is flyable at
-/// every instant; with all of them 0 it is unobstructed flight.
+/// axis (behind, or waiting, below 0; ahead, above), left, and up. Between waypoints the offset changes evenly, along
+/// the axis as unobstructed flight gets on. The vehicle follows with bounded speed, climb and acceleration, so whatever
+/// the variables are, the motion is flyable at every instant; with all of them 0 it is unobstructed flight.
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
 /// unobstructed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths
@@ -113,6 +113,7 @@ class PathProblem final : public optimizer::Problem {
   /// Planned towards a stop, m/s²: what the vehicle can follow.
   [[nodiscard]] double braking() const { return std::min(settings_.braking, kBrakingShare * most_acceleration()); }
   void unobstructed_flight();
+  void change_offsets();
   void predict_obstacles();
   [[nodiscard]] Clearance clearance() const;
   void fly_to_target(base::TimedPath& path) const;

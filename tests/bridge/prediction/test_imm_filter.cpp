@@ -87,6 +87,30 @@ TEST(ImmFilter, KnowsSteadyMotionMuchBetterThanItIsMeasured) {
   EXPECT_LT(errors.stated_velocity, 1.2);
 }
 
+// The second ahead is what a plan goes by. Rms, m; a filter with one model less was off by 0.21 and 0.27.
+TEST(ImmFilter, WhoHasFlownStraightIsForeseenFarBetter) {
+  const auto ahead = [](double speed, double until) {
+    double squares = 0.0;
+    constexpr int kTracks = 200;
+    for (std::uint64_t seed = 1; seed <= kTracks; ++seed) {
+      RandomStream random(seed);
+      ImmFilter filter;
+      Track track;
+      double t = 0.0;
+      for (; t < until; t += kInterval) {
+        track = measured({speed * t, 0.0, 1.0}, {speed, 0.0, 0.0}, random);
+        filter.update(kInterval, track);
+        filter.apply(track);
+      }
+      const Vec3 then(speed * (t - kInterval + 1.0), 0.0, 1.0);
+      squares += (planner::geometry::predict_position(track, 1.0, 0.7) - then).squaredNorm();
+    }
+    return std::sqrt(squares / kTracks);
+  };
+  EXPECT_LT(ahead(1.3, 6.0), 0.15);
+  EXPECT_LT(ahead(1.3, 2.0), 0.20);
+}
+
 // Noise of a few measurements looks like a turn, and where that leads in a second is far off.
 TEST(ImmFilter, TakesANewTrackToFlyStraight) {
   constexpr int kTracks = 200;

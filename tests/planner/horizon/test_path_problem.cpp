@@ -146,6 +146,28 @@ TEST(PathProblem, ZeroVariablesDoNotOvershootSpeedOrTarget) {
   }
 }
 
+// Plans are made anew every 50 ms: one that begins by flying back, though it leads on, never gets anywhere.
+TEST(PathProblem, WhoSetsOutSlowlyDoesNotFlyBackFirst) {
+  for (const Vec3& target : kTargets) {
+    PathProblem problem{base::HorizonSettings{}};
+    problem.prepare(request(target));
+    const base::TimedPath free = problem.unobstructed_motion();
+    for (const double share : {0.0, 0.3, 0.7}) {
+      base::TimedPath slow = free;
+      for (base::TimedPoint& point : slow)
+        point.position = free.front().position + share * (point.position - free.front().position);
+      std::vector<double> x = zeros(problem);
+      problem.encode_path(slow, x);
+      const Vec3 axis = (target - free.front().position).normalized();
+      for (const base::TimedPoint& point : problem.motion(x)) {
+        if (point.t <= problem.settings().leg()) {
+          EXPECT_GT(point.velocity.dot(axis), -0.06) << point.t;
+        }
+      }
+    }
+  }
+}
+
 TEST(PathProblem, ZeroVariablesAreTheCheapestWithoutObstacles) {
   PathProblem problem{base::HorizonSettings{}};
   PathRequest r = request();
