@@ -18,8 +18,7 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLonger =
-    4.0;  // m, by which a solution may be longer besides the band, which is narrow near the target
+constexpr double kLonger = 4.0;  // m, that a solution may be longer than the shortest besides the band
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;

@@ -25,7 +25,7 @@ struct TravelLanes {
 
   /// A step over `moved` to `to`, at whose end unobstructed flight is at `unobstructed`.
   [[gnu::always_inline]] void add(const PointLanes<kLanes>& to, const Lanes<kLanes>& moved, const Vec3& unobstructed) {
-    const Vec3 base = unobstructed;
+    const Vec3 base = unobstructed;  // NOLINT(performance-unnecessary-copy-initialization): kept in registers
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double x = to.x[i] - base.x();
       const double y = to.y[i] - base.y();
