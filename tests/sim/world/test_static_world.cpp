@@ -24,10 +24,10 @@ std::vector<config::Obstacle> solids(int count, RandomStream& random) {
   std::vector<config::Obstacle> all;
   for (int i = 0; i < count; ++i) {
     const Vec3 edges = anywhere(random, 2).cwiseAbs().array() + 0.1;
-    config::Obstacle solid{config::BoxShape{edges}, config::LinearMotion{anywhere(random, 20)}};
+    all.push_back({config::BoxShape{edges}, config::LinearMotion{anywhere(random, 20)}});
+    config::Obstacle& solid = all.back();
     if (i % 3 == 0) solid.shape = config::SphereShape{edges.x()};
     if (i % 3 == 1) solid.orientation = anywhere(random, 1);
-    all.push_back(solid);
   }
   return all;
 }
