@@ -74,7 +74,7 @@ TEST(TrackTable, FindsTheVelocitiesOfPositions) {
   ASSERT_EQ(tracks.size(), 2U);
   EXPECT_LT((tracks[0].velocity - Vec3(1, 0, 0)).norm(), 0.05);
   EXPECT_LT((tracks[1].velocity - Vec3(0, 1, 0)).norm(), 0.05);
-  EXPECT_GT(tracks[0].velocity_sigma, 0.05);
+  EXPECT_GT(tracks[0].velocity_sigma, 0.03);
   EXPECT_NEAR(tracks[0].position.x(), 2.1, 0.1);
   for (int i = 20; i < 40; ++i) tell(10.0 + 0.1 * i, 1.9);
   EXPECT_GT(table.counts().frozen_messages, 0U);

@@ -180,7 +180,7 @@ TEST(Campaign, FliesKnownPlacesInEachTier) {
 TEST(Campaign, JudgesOnlyWorldsInWhichNobodyArrived) {
   const Folder folder;
   CampaignSettings settings = small(kFew);
-  settings.families = {"darts"};
+  settings.families = {"head_on"};
   settings.pilots = {"jink", "straight"};
   settings.tiers = support::repetitions<std::string>({"perfect", "realistic"});
   const Results both = fly_in(folder.path() / "both", settings, 2).results;
