@@ -118,7 +118,7 @@ TEST(PredictionError, WhatCameIsHeldAgainstWhatWasPredictedAtEachLead) {
     EXPECT_EQ(judged.laws[0].at(lead).region(0.9) != before[0].at(lead).region(0.9), over) << lead << " s ahead";
     EXPECT_EQ(judged.laws[1].at(lead).region(0.9), before[1].at(lead).region(0.9)) << "nothing swings";
   }
-  judged.watch(straight, 30.0);
+  judged.watch(straight, 20.0);
   for (const double lead : ErrorLaws::kLeads)
     EXPECT_LT(judged.laws[0].at(lead).region(0.99), 0.85 * before[0].at(lead).region(0.99)) << "it goes straight";
 }
