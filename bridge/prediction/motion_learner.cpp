@@ -201,6 +201,10 @@ void MotionLearner::look_for_turn(double t, const planner::base::Track& measured
 void MotionLearner::judge(double t, const planner::base::Track& estimate, PredictionRecord& swings) {
   const double noise = kSigmas * estimate.position_sigma;
   const auto lead = [t](const Trial& trial) { return t - trial.begun; };
+  const auto note = [&](bool came_true) {
+    swings.note(came_true);
+    swings_.note(came_true);
+  };
   for (Trial& trial : trials_) {
     trial.noise = std::max(trial.noise, noise);
     trial.misfit = std::max(trial.misfit, (trial.motion.position(lead(trial)) - estimate.position).norm());
@@ -222,7 +226,7 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate, Predic
     plain_ = !trial.plain_wrong();
     if (trial.misfit < kBetter * trial.plain_misfit) {
       if (proven_ && t - recorded_ >= kLead) {
-        swings.note(/*came_true=*/true);
+        note(/*came_true=*/true);
         recorded_ = t;
       }
       if (failures_ < 0) proven_ = trial.misfit;
@@ -232,7 +236,7 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate, Predic
         break;
       }
     } else {
-      if (proven_ && wrong(trial)) swings.note(/*came_true=*/false);
+      if (proven_ && wrong(trial)) note(/*came_true=*/false);
       proven_.reset();
       failures_ = std::max(failures_, 0) + 1;
     }
@@ -240,7 +244,7 @@ void MotionLearner::judge(double t, const planner::base::Track& estimate, Predic
   }
   // A fit that goes wrong before its time is over ends the belief at once.
   if (std::any_of(trials_.begin(), trials_.end(), wrong)) {
-    if (proven_) swings.note(/*came_true=*/false);
+    if (proven_) note(/*came_true=*/false);
     proven_.reset();
     failures_ = std::max(failures_, 0);
   }
@@ -273,7 +277,7 @@ std::optional<Forecast> MotionLearner::forecast(double now, double t, const plan
     const Trial& newest = trials_.back();
     forecast.motion = newest.motion.later(now - newest.begun);
     forecast.velocity_sigma = kDoubt + 0.5 * *proven_ / kLead;
-    if (all.swings.good()) forecast.plain_until = kLead;
+    if (all.swings.good()) forecast.plain_until = swings_.good() ? 0.0 : kLead;
     return forecast;
   }
   BouncingMotion bouncing{estimate.position, estimate.velocity, all.bounds.bounds(estimate.radius)};

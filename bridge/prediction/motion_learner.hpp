@@ -60,7 +60,8 @@ struct Experience {
 /// do. A turn is foreseen where the track turned before or others did. What is foreseen is avoided besides plain
 /// prediction; that gives way only where the flight's record is good, and not before the obstacle has had time to show
 /// that it moves on as before: so something that is foreseen wrongly, one time in ten at most, is seen kLead before it
-/// is where nothing was expected.
+/// is where nothing was expected. What swings and has as good a record of its own, as after eight seconds as foreseen,
+/// is avoided there alone: what turns more often than each kLead is passed by nobody else.
 class MotionLearner {
  public:
   /// The newest measurement, as measured and as estimated, at its instant `t`. O(samples on trial).
@@ -116,7 +117,8 @@ class MotionLearner {
   planner::base::Box turns_;                     // of its own
   std::array<std::array<int, 2>, 3> returns_{};  // axis; lower, upper: how often it turned there
   double last_turn_ = -1.0;
-  double recorded_ = -1.0;  // when it added to the record of swings last
+  PredictionRecord swings_;  // its own
+  double recorded_ = -1.0;   // when it added to the records of swings last
 };
 
 }  // namespace jink::bridge::prediction

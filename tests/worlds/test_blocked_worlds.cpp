@@ -227,6 +227,25 @@ TEST(ClosedLoop, FliesToAHoleFarAsideWhereWaitingDoesNotHelp) {
   EXPECT_GT(result.min_clearance, 0.0);
 }
 
+// A hole that is thrown back every 0.9 s is passed only by who does not also keep clear, for a second, of where its
+// wall would be if it went straight on.
+TEST(ClosedLoop, PassesThroughAWallThatSwingsQuickly) {
+  config::Scenario scenario = sim::families::make_world("walls", 2449717983);
+  const sim::world::World both(scenario);
+  std::vector<config::Obstacle> wall;
+  for (int i = 0; i < both.obstacle_count(); ++i) {
+    if (both.exact_track(i, 0.0).position.x() < 10.0) wall.push_back(scenario.obstacles[static_cast<std::size_t>(i)]);
+  }
+  ASSERT_EQ(wall.size(), 88U);
+  scenario.obstacles = wall;
+  scenario.target.x() = 9.4;
+  scenario.time_limit = 40.0;
+  sim::families::set_tier(scenario, sim::families::Tier::kRealistic);
+  const sim::flight::ClosedLoopResult result = fly(scenario);
+  EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
+  EXPECT_GT(result.min_clearance, 0.0);
+}
+
 class ThreadCount : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(ThreadCount, DoesNotChangeABitOfTheFlight) {

@@ -256,6 +256,23 @@ TEST(MotionLearner, ReliesOnNothingWithoutARecord) {
   EXPECT_TRUE(relied_on(*swinging.forecast(14.0)));
 }
 
+// What has swung as foreseen for eight seconds is not avoided where it would be if it went straight on; what then does
+// is, from when it has shown that.
+TEST(MotionLearner, ReliesOnASwingAloneThatKeepsComingTrue) {
+  Watched watched;
+  watched.watch(swing, 7.0);
+  ASSERT_TRUE(watched.forecast(7.0).has_value());
+  EXPECT_EQ(watched.forecast(7.0)->plain_until, MotionLearner::kLead);
+  watched.t += kStep;
+  watched.watch(swing, 14.0);
+  ASSERT_TRUE(watched.forecast(14.0).has_value());
+  EXPECT_EQ(watched.forecast(14.0)->plain_until, 0.0);
+  const Track before = exact(swing, 14.0);
+  watched.t += kStep;
+  watched.watch([&](double t) { return Vec3(before.position + (t - 14.0) * before.velocity); }, 14.8);
+  EXPECT_FALSE(watched.forecast(14.8).has_value() && relied_on(*watched.forecast(14.8)));
+}
+
 TEST(PredictionRecord, DoubtsByTheRuleOfSuccession) {
   PredictionRecord record;
   EXPECT_EQ(record.doubt(), 0.5);
