@@ -122,7 +122,7 @@ void MotionLearner::observe(double t, const planner::base::Track& measured, cons
   remember({t, measured.position, measured.velocity}, exact(measured));
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
-  all.bounds.saw(estimate.position, estimate.radius);
+  all.bounds.saw(estimate.position, estimate.radius - kSigmas * estimate.position_sigma);
   // A bound that the track has passed is none.
   for (int axis = 0; axis < 3; ++axis) {
     const double slack = kBeyond + kSigmas * estimate.position_sigma;

@@ -305,6 +305,7 @@ struct Noisy {
   ImmFilter filter;
   Track last;
   RandomStream random{3};
+  std::uint64_t name = 1;
 
   /// A fit at most every `pause` seconds.
   template <typename Motion>
@@ -324,7 +325,7 @@ struct Noisy {
     last = measured;
     filter.update(kStep, measured);
     filter.apply(last);
-    learned.observe(t, measured, last, 1, all);
+    learned.observe(t, measured, last, name, all);
     if (learned.fit_due() > t || t < fitted_ + pause) return;
     learned.fit(t, measured, last);
     fitted_ = t;
@@ -395,6 +396,35 @@ TEST(MotionLearner, TurnsWhereOthersTurned) {
   const auto forecast = third.forecast(0.0, 0.0, track, all);
   ASSERT_TRUE(forecast.has_value());
   EXPECT_LT((to_path(*forecast, 3.0, 0.1).position(2.5) - bouncing(2.5, -0.5)).norm(), 0.1);
+}
+
+// What noise puts behind a plane for a moment was not beyond it.
+TEST(MotionLearner, TurnsWhereOthersTurnedInNoise) {
+  Experience all = good_experience();
+  std::uint64_t tracks = 0;
+  /// Where it is foreseen a second after it was watched for so long, and where it is then.
+  const auto watch = [&all, &tracks](double y, double until) {
+    Noisy noisy;
+    noisy.all = all;
+    noisy.name = ++tracks;
+    noisy.random = RandomStream(tracks);
+    double t = 0.0;
+    for (; t < until; t += kStep) noisy.observe([y](double s) { return bouncing(s, y); }, t, 0.0);
+    t -= kStep;
+    all = noisy.all;
+    const auto forecast = noisy.learned.forecast(t, t, noisy.last, all);
+    const Vec3 plain = planner::geometry::predict_position(noisy.last, 1.0, 0.3);
+    return ((forecast ? to_path(*forecast, 2.0, 0.1).position(1.0) : plain) - bouncing(t + 1.0, y)).norm();
+  };
+  double squares = 0.0;
+  constexpr int kAsked = 10;
+  for (int i = 0; i < kAsked; ++i) {
+    watch(0.2 * i, 3.0);
+    for (int n = 0; n < 20; ++n) watch(0.95, 0.1);  // comes into view where they turn
+    const double error = watch(-0.9, 1.2);  // has not turned yet, and will
+    squares += error * error;
+  }
+  EXPECT_LT(std::sqrt(squares / kAsked), 0.3);
 }
 
 TEST(ObstaclesOf, WhatMovesNearbyMayStop) {
