@@ -421,7 +421,7 @@ TEST(MotionLearner, TurnsWhereOthersTurnedInNoise) {
   for (int i = 0; i < kAsked; ++i) {
     watch(0.2 * i, 3.0);
     for (int n = 0; n < 20; ++n) watch(0.95, 0.1);  // comes into view where they turn
-    const double error = watch(-0.9, 1.2);  // has not turned yet, and will
+    const double error = watch(-0.9, 1.2);          // has not turned yet, and will
     squares += error * error;
   }
   EXPECT_LT(std::sqrt(squares / kAsked), 0.3);
