@@ -198,18 +198,24 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ClosedLoop,
                            return name_of(std::get<0>(tested.param)) + "_" + std::to_string(std::get<1>(tested.param));
                          });
 
+/// The first of a world's walls along x, to be passed.
+config::Scenario first_wall(std::uint64_t seed) {
+  config::Scenario scenario = sim::families::make_world("walls", seed);
+  const sim::world::World all(scenario);
+  std::vector<config::Obstacle> wall;
+  for (int i = 0; i < all.obstacle_count(); ++i) {
+    if (all.exact_track(i, 0.0).position.x() < 10.0) wall.push_back(scenario.obstacles[static_cast<std::size_t>(i)]);
+  }
+  scenario.obstacles = wall;
+  scenario.target.x() = 10.0;
+  return scenario;
+}
+
 // The first of two walls, 111 spheres: whoever only tries ways past the nearest of them never meets the hole that
 // wanders 3 to 5 m aside.
 TEST(ClosedLoop, PassesThroughAWallWithAWanderingHole) {
-  config::Scenario scenario = sim::families::make_world("walls", 103);
-  const sim::world::World both(scenario);
-  std::vector<config::Obstacle> wall;
-  for (int i = 0; i < both.obstacle_count(); ++i) {
-    if (both.exact_track(i, 0.0).position.x() < 10.0) wall.push_back(scenario.obstacles[static_cast<std::size_t>(i)]);
-  }
-  ASSERT_EQ(wall.size(), 111U);
-  scenario.obstacles = wall;
-  scenario.target.x() = 10.0;
+  const config::Scenario scenario = first_wall(103);
+  ASSERT_EQ(scenario.obstacles.size(), 111U);
   const sim::flight::ClosedLoopResult result = fly(scenario);
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
@@ -230,15 +236,8 @@ TEST(ClosedLoop, FliesToAHoleFarAsideWhereWaitingDoesNotHelp) {
 // A hole that is thrown back every 0.9 s is passed only by who does not also keep clear, for a second, of where its
 // wall would be if it went straight on.
 TEST(ClosedLoop, PassesThroughAWallThatSwingsQuickly) {
-  config::Scenario scenario = sim::families::make_world("walls", 2449717983);
-  const sim::world::World both(scenario);
-  std::vector<config::Obstacle> wall;
-  for (int i = 0; i < both.obstacle_count(); ++i) {
-    if (both.exact_track(i, 0.0).position.x() < 10.0) wall.push_back(scenario.obstacles[static_cast<std::size_t>(i)]);
-  }
-  ASSERT_EQ(wall.size(), 88U);
-  scenario.obstacles = wall;
-  scenario.target.x() = 9.4;
+  config::Scenario scenario = first_wall(2449717983);
+  ASSERT_EQ(scenario.obstacles.size(), 88U);
   scenario.time_limit = 40.0;
   sim::families::set_tier(scenario, sim::families::Tier::kRealistic);
   const sim::flight::ClosedLoopResult result = fly(scenario);
