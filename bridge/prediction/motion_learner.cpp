@@ -122,10 +122,11 @@ void MotionLearner::observe(double t, const planner::base::Track& measured, cons
   remember({t, measured.position, measured.velocity}, exact(measured));
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
-  all.bounds.saw(estimate.position, estimate.radius - kSigmas * estimate.position_sigma);
+  const double noise = kSigmas * estimate.position_sigma;
+  all.bounds.saw(estimate.position, estimate.radius - noise);
   // A bound that the track has passed is none.
+  const double slack = kBeyond + noise;
   for (int axis = 0; axis < 3; ++axis) {
-    const double slack = kBeyond + kSigmas * estimate.position_sigma;
     auto& [below, above] = returns_[static_cast<std::size_t>(axis)];
     if (estimate.position[axis] > turns_.max[axis] + slack) {
       all.turns.note(/*came_true=*/false);
@@ -143,7 +144,7 @@ void MotionLearner::observe(double t, const planner::base::Track& measured, cons
   const bool curves = estimate.position_sigma <= 0.0 && estimate.acceleration.squaredNorm() > kCurving * kCurving;
   const bool fails =
       std::any_of(trials_.begin(), trials_.end(), [](const Trial& trial) { return trial.plain_wrong(); });
-  const bool understood = proven_ && *proven_ < kUnderstood + kSigmas * estimate.position_sigma;
+  const bool understood = proven_ && *proven_ < kUnderstood + noise;
   unexplained_ = !understood && !plain_ && (curves || fails);
 }
 

@@ -19,6 +19,7 @@ namespace jink::bridge::prediction {
 /// tracks turned at it and none was ever beyond.
 class LearnedBounds {
  public:
+  /// That the track reached out so far from there, for sure: by less than its radius where noise may have put it there.
   void saw(const Vec3& position, double radius);
   void turned(std::uint64_t track, int axis, bool upper, double surface);
   /// For the centre of a sphere; unbounded where no bound is known.

@@ -402,7 +402,7 @@ TEST(MotionLearner, TurnsWhereOthersTurned) {
 TEST(MotionLearner, TurnsWhereOthersTurnedInNoise) {
   Experience all = good_experience();
   std::uint64_t tracks = 0;
-  /// Where it is foreseen a second after it was watched for so long, and where it is then.
+  /// How far from where it is a second after it was watched for so long it is foreseen, m.
   const auto watch = [&all, &tracks](double y, double until) {
     Noisy noisy;
     noisy.all = all;
@@ -413,7 +413,7 @@ TEST(MotionLearner, TurnsWhereOthersTurnedInNoise) {
     t -= kStep;
     all = noisy.all;
     const auto forecast = noisy.learned.forecast(t, t, noisy.last, all);
-    const Vec3 plain = planner::geometry::predict_position(noisy.last, 1.0, 0.3);
+    const Vec3 plain = planner::geometry::predict_position(noisy.last, 1.0);
     return ((forecast ? to_path(*forecast, 2.0, 0.1).position(1.0) : plain) - bouncing(t + 1.0, y)).norm();
   };
   double squares = 0.0;
