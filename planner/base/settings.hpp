@@ -89,7 +89,7 @@ struct HorizonSettings {
   double sigma_factor = 2.0;         ///< standard deviations of a track's position that clearance is asked for
   double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
   double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
-  double clearance_limit = 1.2;      ///< the most that uncertainty may ask for on top of the margin
+  double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
   double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
   double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
   double hurry = 4.0;                ///< times time_weight, for a vehicle that is stuck
