@@ -10,16 +10,16 @@ namespace {
 
 using Matrix3 = Eigen::Matrix3d;
 
-constexpr std::size_t kTurning = 2;                 // the model; those before it are steady
-constexpr std::array kSteadyNoise = {0.002, 0.1};   // m²/s³, of their acceleration
-constexpr double kTurningNoise = 6.0;               // m²/s⁵, of the turning model's jerk
-constexpr double kTurningSpread = 1.0;              // m/s², of the acceleration that a turn may begin with
-constexpr double kSojourn = 5.0;                    // s, time constant with which one model turns into all
-constexpr std::array kAtFirst = {0.45, 0.45, 0.1};  // probabilities: noise of a new track looks like a turn
-constexpr double kGate = 45.0;                      // squared Mahalanobis distance that noise has once in ten million
-constexpr double kLeastProbability = 0.02;          // of a model
-constexpr double kLeastSigma = 0.01;                // m, m/s
-constexpr double kLongest = 1.0;                    // s, between measurements, after which the estimate begins anew
+constexpr std::size_t kTurning = 3;                       // the model; those before it have no acceleration
+constexpr std::array kSteadyNoise = {0.002, 0.1, 10.0};   // m²/s³, of their acceleration
+constexpr double kTurningNoise = 6.0;                     // m²/s⁵, of the turning model's jerk
+constexpr double kTurningSpread = 1.0;                    // m/s², of the acceleration that a turn may begin with
+constexpr std::array kSojourn = {5.0, 5.0, 0.1, 5.0};     // s, time constants with which one model turns into all
+constexpr std::array kAtFirst = {0.44, 0.44, 0.02, 0.1};  // probabilities: noise of a new track looks like a turn
+constexpr double kGate = 45.0;               // squared Mahalanobis distance that noise has once in ten million
+constexpr double kLeastProbability = 0.002;  // of a model
+constexpr double kLeastSigma = 0.01;         // m, m/s
+constexpr double kLongest = 1.0;             // s, between measurements, after which the estimate begins anew
 
 Matrix3 transition(double dt, std::size_t model) {
   Matrix3 f = Matrix3::Identity();
@@ -64,14 +64,15 @@ void ImmFilter::begin(const planner::base::Track& measured, const Noise& noise) 
 
 // Each model goes on from a mixture of all, as likely as they turn into one another.
 void ImmFilter::mix(double dt) {
-  const double other = (1.0 - std::exp(-dt / kSojourn)) / kModels;
+  std::array<double, kModels> other{};
+  for (std::size_t i = 0; i < kModels; ++i) other[i] = (1.0 - std::exp(-dt / kSojourn[i])) / kModels;
   const std::array<Model, kModels> before = models_;
   for (std::size_t j = 0; j < kModels; ++j) {
     Model& model = models_[j];
     model = {};
     std::array<double, kModels> share{};
     for (std::size_t i = 0; i < kModels; ++i) {
-      share[i] = (i == j ? 1.0 - (kModels - 1) * other : other) * before[i].probability;
+      share[i] = (i == j ? 1.0 - (kModels - 1) * other[i] : other[i]) * before[i].probability;
       model.probability += share[i];
       model.state += share[i] * before[i].state;
     }

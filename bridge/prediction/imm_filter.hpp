@@ -11,10 +11,10 @@
 namespace jink::bridge::prediction {
 
 /// An interacting multiple model estimator (Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and
-/// Navigation", 2001, section 11.6.6) of three models: one that flies straight, one whose velocity wanders, and one
-/// whose acceleration does. The axes are independent and measured alike, so they share their covariances. What is so
-/// far off all models that noise cannot explain it, as after a bounce, begins anew from the measurement. Not
-/// thread-safe.
+/// Navigation", 2001, section 11.6.6) of four models: one that flies straight, one whose velocity wanders, one whose
+/// velocity is another at once, as of who stops or turns on the spot, and one whose acceleration wanders. The axes are
+/// independent and measured alike, so they share their covariances. What is so far off all models that noise cannot
+/// explain it, as after a bounce, begins anew from the measurement. Not thread-safe.
 class ImmFilter {
  public:
   /// Takes in a measurement, `dt` seconds after the one before, with standard deviations per axis. `measured` gives
@@ -29,7 +29,7 @@ class ImmFilter {
 
  private:
   using Matrix3 = Eigen::Matrix3d;
-  static constexpr std::size_t kModels = 3;
+  static constexpr std::size_t kModels = 4;
   struct Model {
     Matrix3 state = Matrix3::Zero();       ///< rows: position, velocity, acceleration; a column per axis
     Matrix3 covariance = Matrix3::Zero();  ///< of position, velocity and acceleration, for each axis
@@ -47,7 +47,7 @@ class ImmFilter {
   };
   Fit correct(Model& model, const planner::base::Track& measured, const Noise& noise) const;
 
-  std::array<Model, kModels> models_;  // straight, wandering, turning
+  std::array<Model, kModels> models_;  // straight, wandering, sudden, turning
   bool begun_ = false;
 };
 
