@@ -113,11 +113,20 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     request = std::move(aside);
     return plan;
   };
+  // What waits where it can stay, and sees no way on in time, goes on as soon as a plan does.
+  std::optional<WayInTime> stay;
   if (!aside_.empty() && is_valid(request)) {
-    if (std::optional<verify::Plan> plan = plan_aside(way_in_time(request, here))) return *std::move(plan);
+    stay = way_in_time(request, here);
+    if (!stay->stays || stay->arrival < base::kInfinity) {
+      if (std::optional<verify::Plan> plan = plan_aside(*stay)) return *std::move(plan);
+      stay.reset();
+    }
+  }
+  verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
+  if (stay && is_behind(best, *stay, request)) {
+    if (std::optional<verify::Plan> plan = plan_aside(*stay)) return *std::move(plan);
   }
   aside_.clear();
-  verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
   if (best.path.empty()) return best;
   const std::vector<Vec3> way = guide_.way().empty() ? std::vector{given.position, given.target}
                                                      : std::vector(guide_.way().begin(), guide_.way().end());

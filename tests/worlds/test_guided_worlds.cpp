@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "sim/families/families.hpp"
 #include "tests/worlds/way_through.hpp"
 
 namespace jink::worlds {
@@ -108,6 +110,16 @@ TEST(GuidedWorlds, WhereSomethingThatMovesIsInTheWayAnotherIsTaken) {
   doors.scenario.obstacles.push_back({config::CylinderShape{0.4, 8.0}, swings});
   const auto flight = expect_flown_through(doors.scenario);
   EXPECT_LT(flight.flight.flight_time, 30.0);
+}
+
+// Out of a lift through a door of 1.34 m: with the margin's full width no way leads there in time, and who waits for
+// one waits in the lift while the door opens five times.
+TEST(GuidedWorlds, WhoWaitsForNoWayInTimeGoesOnAsSoonAsAPlanDoes) {
+  constexpr std::uint64_t kSeed = 1605956742;
+  config::Scenario scenario = sim::families::make_world("lift_door", kSeed);
+  sim::families::set_tier(scenario, sim::families::Tier::kRealistic, kSeed);
+  const auto flight = expect_flown_through(scenario, kSeed);
+  EXPECT_LT(flight.flight.flight_time, 50.0);
 }
 
 class GuidedWorlds : public testing::TestWithParam<GuidedWorld> {};

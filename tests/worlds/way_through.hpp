@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,15 +23,16 @@
 namespace jink::worlds {
 
 /// Flies it at the settings' defaults.
-inline sim::flight::ClosedLoopResult flown(const config::Scenario& scenario) {
+inline sim::flight::ClosedLoopResult flown(const config::Scenario& scenario, std::uint64_t seed = 1) {
   sim::flight::ClosedLoopOptions options;
+  options.seed = seed;
   options.threads = 1;
   return sim::flight::fly_closed_loop(scenario, config::Settings(), options);
 }
 
 /// The flight arrives, and touches nothing. Returns it.
-inline sim::flight::ClosedLoopResult expect_flown_through(const config::Scenario& scenario) {
-  sim::flight::ClosedLoopResult result = flown(scenario);
+inline sim::flight::ClosedLoopResult expect_flown_through(const config::Scenario& scenario, std::uint64_t seed = 1) {
+  sim::flight::ClosedLoopResult result = flown(scenario, seed);
   EXPECT_EQ(result.flight.outcome, bridge::supervisor::Outcome::kReached) << result.flight.reason;
   EXPECT_GT(result.min_clearance, 0.0);
   return result;
