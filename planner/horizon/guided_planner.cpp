@@ -113,6 +113,15 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     request = std::move(aside);
     return plan;
   };
+  // That in place of a plan which is behind the way in time.
+  const auto went_aside = [&](verify::Plan& best, const WayInTime& in_time) {
+    if (!is_behind(best, in_time, request)) return false;
+    std::optional<verify::Plan> plan = plan_aside(in_time);
+    if (!plan) return false;
+    plan->evaluations += best.evaluations;
+    best = *std::move(plan);
+    return true;
+  };
   // What waits where it can stay, and sees no way on in time, goes on as soon as a plan does.
   std::optional<WayInTime> stay;
   if (!aside_.empty() && is_valid(request)) {
@@ -123,9 +132,7 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     }
   }
   verify::Plan best = planner_.plan(request, previous, seed, number, budget, pool);
-  if (stay && is_behind(best, *stay, request)) {
-    if (std::optional<verify::Plan> plan = plan_aside(*stay)) return *std::move(plan);
-  }
+  if (stay && went_aside(best, *stay)) return best;
   aside_.clear();
   if (best.path.empty()) return best;
   const std::vector<Vec3> way = guide_.way().empty() ? std::vector{given.position, given.target}
@@ -159,18 +166,13 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
     around_ = std::move(around);
     taken = k;
   }
+  best.evaluations = evaluations;
   if (taken) {
     guide_.take(*taken);
     blocked_since_.reset();
-  } else if (const WayInTime in_time = way_in_time(request, here); is_behind(best, in_time, request)) {
-    if (std::optional<verify::Plan> plan = plan_aside(in_time)) {
-      evaluations += plan->evaluations;
-      best = *std::move(plan);
-    } else {
-      aside_.clear();
-    }
+  } else if (!stay && !went_aside(best, way_in_time(request, here))) {
+    aside_.clear();
   }
-  best.evaluations = evaluations;
   return best;
 }
 
