@@ -255,11 +255,13 @@ std::string_view missing_security_file(const std::filesystem::path& folder) {
 }
 
 Mission load_mission(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
-  const Map map(read_document(file), {"format",    "name",           "connection", "system_id",        "icao_address",
-                                      "vehicle",   "takeoff_height", "min_height", "heights",          "waypoints",
-                                      "arrival",   "geofence",       "map",        "no_fly",           "fence",
-                                      "dds",       "tracks",         "cloud",      "endings",          "state",
-                                      "setpoints", "intents",        "time_limit", "acceptance_radius"},
+  const Map map(read_document(file), {"format",       "name",      "connection",     "system_id",
+                                      "icao_address", "vehicle",   "takeoff_height", "min_height",
+                                      "heights",      "waypoints", "arrival",        "geofence",
+                                      "map",          "no_fly",    "fence",          "dds",
+                                      "tracks",       "cloud",     "endings",        "state",
+                                      "setpoints",    "intents",   "time_limit",     "acceptance_radius",
+                                      "hold_time"},
                 "jink-mission/1");
   Mission mission;
   mission.name = map.text("name");
@@ -296,7 +298,9 @@ Mission load_mission(const std::filesystem::path& file, const std::filesystem::p
   if (const auto cloud = map.find("cloud")) mission.cloud = read_cloud(*cloud);
   if (const auto endings = map.find("endings")) mission.endings = read_endings(*endings);
   mission.acceptance_radius = map.number_or("acceptance_radius", kAcceptance, 0.0);
-  mission.time_limit = map.number_or("time_limit", above(0, 86400), mission.time_limit);
+  mission.hold_time = map.number_or("hold_time", kHoldTime, 0.0);
+  mission.time_limit =
+      map.number_or("time_limit", above(mission.hold_time, 86400), mission.time_limit + mission.hold_time);
   return mission;
 }
 

@@ -133,6 +133,7 @@ struct Mission {
   std::optional<CloudPolicy> cloud;  ///< none: nothing is seen but tracks
   Endings endings;
   double acceptance_radius = 0.0;  ///< m, about the last waypoint, in which it is reached at any speed; 0: at it, slow
+  double hold_time = 0.0;          ///< s, that it stays about the last waypoint once it has been there, and evades
   double time_limit = 300.0;
   double ground = 0.0;  ///< its height; no key of the file, see in_local_frame
 };

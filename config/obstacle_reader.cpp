@@ -115,11 +115,16 @@ WaypointsMotion read_waypoints(const Value& value) {
   return motion;
 }
 
+ChaseMotion read_chase(const Value& value) {
+  const Map map(value, {"type", "position", "speed"});
+  return {map.vec3("position", kCoordinate), map.number("speed", closed(0, kSpeed.max))};
+}
+
 Motion read_moving(const Value& value) {
   // Two passes: the keys of any motion first, to find a misspelled `type`; then those of the type alone.
   const Map any(value, {"type", "center", "scale", "slower", "offset", "amplitude", "frequency_hz", "phase", "position",
-                        "velocity", "min", "max", "times", "points"});
-  static constexpr std::array<std::string_view, 4> kTypes = {"trefoil", "sine", "bounce", "waypoints"};
+                        "velocity", "min", "max", "times", "points", "speed"});
+  static constexpr std::array<std::string_view, 5> kTypes = {"trefoil", "sine", "bounce", "waypoints", "chase"};
   switch (any.at("type", "one of " + join(kTypes)).choice(kTypes)) {
     case 0:
       return read_trefoil(value);
@@ -127,8 +132,10 @@ Motion read_moving(const Value& value) {
       return read_sine(value);
     case 2:
       return read_bounce(value);
-    default:
+    case 3:
       return read_waypoints(value);
+    default:
+      return read_chase(value);
   }
 }
 

@@ -119,7 +119,7 @@ std::vector<ScenarioVehicle> read_further(const Value& value, const Scenario& sc
 
 // The contract's default: ten times as long as the straight flight, and half a minute to get going.
 double default_time_limit(const Scenario& scenario) {
-  return 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0;
+  return 10.0 * (scenario.target - scenario.start).norm() / scenario.vehicle.max_speed + 30.0 + scenario.hold_time;
 }
 
 }  // namespace
@@ -140,8 +140,8 @@ std::vector<ScenarioVehicle> all_vehicles(const Scenario& scenario) {
 
 Scenario load_scenario(const std::filesystem::path& file, const std::filesystem::path& vehicles) {
   const Map map(read_document(file),
-                {"format", "name", "start", "target", "acceptance_radius", "time_limit", "vehicle", "world", "sensing",
-                 "obstacles", "map", "no_fly", "vehicles", "wind", "estimate", "faults"},
+                {"format", "name", "start", "target", "acceptance_radius", "hold_time", "time_limit", "vehicle",
+                 "world", "sensing", "obstacles", "map", "no_fly", "vehicles", "wind", "estimate", "faults"},
                 "jink-scenario/1");
   Scenario scenario;
   scenario.name = map.text("name");
@@ -152,7 +152,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::filesystem:
   scenario.vehicle_name = std::move(vehicle.name);
   scenario.vehicle = vehicle.limits;
   scenario.acceptance_radius = map.number_or("acceptance_radius", kAcceptance, 0.0);
-  scenario.time_limit = map.number_or("time_limit", above(0, 1e6), default_time_limit(scenario));
+  scenario.hold_time = map.number_or("hold_time", kHoldTime, 0.0);
+  scenario.time_limit = map.number_or("time_limit", above(scenario.hold_time, 1e6), default_time_limit(scenario));
   if (const auto sensing = map.find("sensing")) scenario.sensing = read_sensing(*sensing);
   // Who has a known world may have nothing else in it.
   if (!map.find("map") && !map.find("no_fly")) (void)map.at("obstacles", "a list, [] for none");

@@ -81,7 +81,14 @@ struct WaypointsMotion {
   std::vector<Vec3> points;
   bool operator==(const WaypointsMotion&) const = default;
 };
-using Motion = std::variant<LinearMotion, TrefoilMotion, SineMotion, BounceMotion, WaypointsMotion>;
+/// At that speed to where the nearest vehicle is, which it looks at twice a second; it stands where there is none.
+/// Where it is depends on what the vehicles do: sim::world::World::advance().
+struct ChaseMotion {
+  Vec3 position = Vec3::Zero();  ///< at t = 0
+  double speed = 0.0;            ///< m/s
+  bool operator==(const ChaseMotion&) const = default;
+};
+using Motion = std::variant<LinearMotion, TrefoilMotion, SineMotion, BounceMotion, WaypointsMotion, ChaseMotion>;
 
 struct Obstacle {
   Shape shape;
@@ -154,6 +161,7 @@ struct Scenario {
   Vec3 target = Vec3::Zero();
   double time_limit = 0.0;
   double acceptance_radius = 0.0;  ///< m, about the target, in which it is reached at any speed; 0: at it, slow
+  double hold_time = 0.0;          ///< s, that it stays about the target once it has been there, and evades
   std::string vehicle_name;        ///< "inline" where the file gives a map
   planner::base::VehicleLimits vehicle;
   std::optional<planner::base::Box> world;

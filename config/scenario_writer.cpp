@@ -96,6 +96,10 @@ struct AddMotion {
     motion.add("type", "waypoints").add("times", "[" + times + "]");
     map.add("motion", motion.add("points", list_of(m.points)).text());
   }
+  void operator()(const ChaseMotion& m) const {
+    FlowMap motion;
+    map.add("motion", motion.add("type", "chase").add("position", m.position).add("speed", m.speed).text());
+  }
 };
 
 std::string obstacle_text(const Obstacle& obstacle) {
@@ -170,6 +174,7 @@ std::string to_yaml(const Scenario& scenario) {
   line("start", vector_text(scenario.start));
   line("target", vector_text(scenario.target));
   if (scenario.acceptance_radius > 0.0) line("acceptance_radius", number_text(scenario.acceptance_radius));
+  if (scenario.hold_time > 0.0) line("hold_time", number_text(scenario.hold_time));
   line("time_limit", number_text(scenario.time_limit));
   line("vehicle", vehicle_text(scenario.vehicle_name, scenario.vehicle));
   if (scenario.world) line("world", FlowMap().add("min", scenario.world->min).add("max", scenario.world->max).text());

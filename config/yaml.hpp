@@ -100,6 +100,8 @@ Value read_document(const std::filesystem::path& file);
 inline constexpr Range kCoordinate = within(1e5);
 /// m: of an acceptance radius.
 inline constexpr Range kAcceptance = above(0, 100);
+/// s: of a hold at the target.
+inline constexpr Range kHoldTime = above(0, 86400);
 
 /// A box given by `min` and `max`, both required, min < max on each axis.
 planner::base::Box read_box(const Value& value, const Range& range);

@@ -283,7 +283,7 @@ Goal Companion::goal(double now, Goal::Kind kind) {
   if (kind == Goal::Kind::kClimb) return {kind, motion_.takeoff_point().value_or(climb_end(mission_, intake_.state()))};
   if (planning_.retreats()) route_.begin_anew();
   // Who has arrived stays.
-  if (supervisor_.arrived()) return {kind, end()};
+  if (supervisor_.arrived()) return {kind, supervisor_.holds(now) ? route_.target() : end()};
   return {kind, route_.target(), /*visit=*/true, route_.stuck(now, intake_.state().motion.value.position)};
 }
 

@@ -17,15 +17,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kPhases{
     {{"engaging", "taking over"}, {"handover", "handing over to HOLD"}}};
 
 /// Events besides phases and hazards that a pilot should know of.
-constexpr std::array<std::pair<std::string_view, Severity>, 9> kEvents{{{"hazard_over", Severity::kInfo},
-                                                                        {"arrived", Severity::kInfo},
-                                                                        {"waiting", Severity::kInfo},
-                                                                        {"waypoint", Severity::kInfo},
-                                                                        {"stuck", Severity::kWarning},
-                                                                        {"refused", Severity::kWarning},
-                                                                        {"stalled", Severity::kWarning},
-                                                                        {"send_failed", Severity::kWarning},
-                                                                        {"second_autopilot", Severity::kWarning}}};
+constexpr std::array<std::pair<std::string_view, Severity>, 10> kEvents{{{"hazard_over", Severity::kInfo},
+                                                                         {"arrived", Severity::kInfo},
+                                                                         {"holding", Severity::kInfo},
+                                                                         {"waiting", Severity::kInfo},
+                                                                         {"waypoint", Severity::kInfo},
+                                                                         {"stuck", Severity::kWarning},
+                                                                         {"refused", Severity::kWarning},
+                                                                         {"stalled", Severity::kWarning},
+                                                                         {"send_failed", Severity::kWarning},
+                                                                         {"second_autopilot", Severity::kWarning}}};
 
 StatusText phase_text(std::string_view detail) {
   constexpr std::string_view kDone = "done: ";

@@ -177,7 +177,9 @@ void FlightReporter::announce(double now, const supervisor::Supervisor& supervis
   }
   announce_phase(now, supervisor, intake.state());
   if (changed(said_.waiting, supervisor.waiting_for()) && !said_.waiting.empty()) event(now, "waiting", said_.waiting);
-  if (changed(said_.arrived, supervisor.arrived()) && said_.phase == supervisor::Phase::kFlying)
+  if (changed(said_.holds, supervisor.holds(now)) && said_.holds)
+    event(now, "holding", "for " + base::seconds(mission_.hold_time) + ", out of the way of what comes");
+  if (changed(said_.arrived, supervisor.arrived() && !said_.holds) && said_.phase == supervisor::Phase::kFlying)
     event(now, "arrived",
           mission_.arrival == config::Arrival::kLand
               ? "going down as far as plans lead, to land where it stays free"

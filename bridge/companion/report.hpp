@@ -118,7 +118,7 @@ class FlightReporter {
     std::string waiting, hazard;
     planner::verify::PlanStatus plan_status = planner::verify::PlanStatus::kInvalid;
     bool evades = false, reference_lost = false, cautious = false, retreats = false, stuck = false, unseen = false,
-         arrived = false, sending = true, margin = false;
+         arrived = false, holds = false, sending = true, margin = false;
     vehicle::BatteryState battery = vehicle::BatteryState::kUnknown;
     tracking::TrackSourceStatus sources;
     map::CloudSourceStatus clouds;

@@ -37,6 +37,11 @@ bool Supervisor::arrived() const {
   return ending != nullptr && ending->outcome == Outcome::kReached;
 }
 
+bool Supervisor::holds(double now) const {
+  const Flying* flying = std::get_if<Flying>(&phase_);
+  return flying != nullptr && flying->arrived && now - *flying->arrived < mission_.hold_time;
+}
+
 void Supervisor::stop(double now, Outcome outcome, std::string reason, config::EndsIn then) {
   const Phase before = phase();
   if (before == Phase::kDone || before == Phase::kStopping || before == Phase::kHandover) return;
@@ -266,7 +271,7 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
   // Where the vehicle was is no proof of where it is.
   const bool sure = in.state.motion.silence(in.now) <= settings_.stale_state && !mode_changes_.failsafe();
   if (sure && in.flight.at_target && !phase.arrived) phase.arrived = in.now;
-  if (sure && phase.arrived && in.flight.at_end && !phase.at_end) phase.at_end = in.now;
+  if (sure && phase.arrived && !holds(in.now) && in.flight.at_end && !phase.at_end) phase.at_end = in.now;
   if (sure && phase.at_end && in.flight.at_end && !in.flight.leaves_end && !in.flight.aircraft_comes) {
     hazard_.clear();
     const double held = in.now - *phase.at_end;
@@ -280,7 +285,9 @@ Decision Supervisor::step(Flying& phase, const Input& in) {
   }
   if (in.now - *flight_began_ > mission_.time_limit) {
     if (phase.arrived) {
-      stop(in.now, Outcome::kReached, "target reached, but it did not stay free within the time limit");
+      stop(in.now, Outcome::kReached,
+           holds(in.now) ? "target reached, but the time limit passed before its hold_time"
+                         : "target reached, but it did not stay free within the time limit");
     } else {
       stop(in.now, Outcome::kTimeout, "the time limit passed before the target was reached");
     }

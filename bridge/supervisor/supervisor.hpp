@@ -55,6 +55,8 @@ class Supervisor {
   /// It has been at the target. Flying still, it holds near there, out of the way of what comes, until the target stays
   /// free or the time is over.
   [[nodiscard]] bool arrived() const;
+  /// It has been at the target and is to stay there, config::Mission::hold_time.
+  [[nodiscard]] bool holds(double now) const;
   /// When OFFBOARD flight began; none: not yet.
   [[nodiscard]] std::optional<double> flight_began() const { return flight_began_; }
 

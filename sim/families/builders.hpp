@@ -145,6 +145,8 @@ void build_wires(config::Scenario& scenario, RandomStream& random);
 void build_sando_launched(config::Scenario& scenario, RandomStream& random, int count);
 void build_panther(config::Scenario& scenario, RandomStream& random, double slower);
 void build_fapp(config::Scenario& scenario, RandomStream& random);
+void build_sando_hover(config::Scenario& scenario, RandomStream& random);
+void build_sando_chaser(config::Scenario& scenario, RandomStream& random);
 void build_cerlab_corridor(config::Scenario& scenario, RandomStream& random);
 void build_fcp(config::Scenario& scenario, RandomStream& random, int count);
 

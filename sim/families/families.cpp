@@ -206,7 +206,9 @@ constexpr std::array kFamilies = {
     Family{"fapp_50", false, build_fapp, false, false, true},
     Family{"cerlab_corridor", false, build_cerlab_corridor, false, true, true},
     Family{"fcp_50", false, build_of<build_fcp, 50>, false, false, true},
-    Family{"fcp_280", false, build_of<build_fcp, 280>, false, false, true}};
+    Family{"fcp_280", false, build_of<build_fcp, 280>, false, false, true},
+    Family{"sando_hover", false, build_sando_hover, false, false, true},
+    Family{"sando_chaser", false, build_sando_chaser, false, false, true}};
 
 template <bool on_request>
 constexpr auto kNames = [] {

@@ -63,6 +63,7 @@ inline constexpr double kStraightOverlap = 0.1;
 /// The names of those that are flown on request alone, in a fixed order: others' worlds as they launch or describe
 /// them, with their vehicle's limits. The straight line may be free. Sources and what differs: launched.cpp, fcp.cpp.
 /// - sando_launched_50, _100, _200: the trefoils as their launch file has them, poles and beams.
+/// - sando_hover, sando_chaser: the vehicle stays where it starts, among three trefoils or chased at 1 m/s.
 /// - panther_slow, panther_fast: five trefoils in a row.
 /// - fapp_50: 50 columns that drift and 20 that stand, sensed from 8 m.
 /// - cerlab_corridor: nine people and nine boxes; has a map.

@@ -71,6 +71,46 @@ void build_sando_launched(config::Scenario& scenario, RandomStream& random, int 
   }
 }
 
+namespace {
+
+/// The vehicle of the launched worlds, which stays where it starts for a minute, in the open.
+void hover_as_sando(config::Scenario& scenario) {
+  set_limits(scenario, {0.1 * std::numbers::sqrt3, 5.0, 5.0, 20.0, 100.0});
+  scenario.start = scenario.target = {0, 0, 2};
+  scenario.world = planner::base::Box{{-200, -200, 0.5}, {200, 200, 6}};
+  scenario.hold_time = 60.0;
+  scenario.time_limit = 90.0;
+}
+
+}  // namespace
+
+// SANDO's hover test, generate_hover_test_yaml() in run_sim.py: three trefoils about the vehicle, 120 degrees apart.
+// differs: theirs goes on until somebody ends it, ours for a minute, and the seed turns the three about the vehicle.
+void build_sando_hover(config::Scenario& scenario, RandomStream& random) {
+  constexpr int kCount = 3;
+  constexpr double kAway = 5.0;  // m, their centres
+  hover_as_sando(scenario);
+  const double turn = random.uniform(0.0, kTwoPi);
+  for (int i = 0; i < kCount; ++i) {
+    const double phase = kTwoPi * i / kCount;
+    const Vec3 center = scenario.start + kAway * Vec3(std::cos(turn + phase), std::sin(turn + phase), 0.0);
+    scenario.obstacles.push_back(launched_trefoil(center, {4, 4, 2}, 2.0, phase));
+  }
+}
+
+// SANDO's adversarial test, generate_adversarial_test_yaml() in run_sim.py: another vehicle, of the same size, at 1 m/s
+// for where this one is, twice a second. differs: theirs has a planner, tells what it plans and comes from x = 8 m;
+// ours goes straight, is seen alone, and comes from 8 m at the same height, from where the seed says. The chase lasts a
+// minute and the vehicle is never left alone, so it ends at the time limit.
+void build_sando_chaser(config::Scenario& scenario, RandomStream& random) {
+  constexpr double kAway = 8.0;   // m
+  constexpr double kSpeed = 1.0;  // m/s
+  hover_as_sando(scenario);
+  const double from = random.uniform(0.0, kTwoPi);
+  const Vec3 place = scenario.start + kAway * Vec3(std::cos(from), std::sin(from), 0.0);
+  scenario.obstacles.push_back({config::SphereShape{scenario.vehicle.radius}, config::ChaseMotion{place, kSpeed}});
+}
+
 // PANTHER (J. Tordesillas, J. P. How, IEEE Access 10, 2022; github.com/mit-acl/panther, 50be45b): dynamic_corridor.py
 // for the obstacles, with `slower` as either of its two values, run_many_sims.py for five of them and the goal,
 // panther.yaml for the limits and the radius of 0.1 m.

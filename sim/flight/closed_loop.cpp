@@ -44,6 +44,7 @@ config::Mission mission_of(const config::Scenario& scenario, std::size_t vehicle
   }
   mission.min_height = scenario.world ? scenario.world->min.z() : std::min({0.0, own.start.z(), own.target.z()});
   mission.acceptance_radius = scenario.acceptance_radius;
+  mission.hold_time = scenario.hold_time;
   mission.time_limit = scenario.time_limit;
   mission.tracks.sensed_from = scenario.sensing.sensed_from;
   mission.intents = !scenario.vehicles.empty();
@@ -100,7 +101,9 @@ struct Member {
   }
   static std::unique_ptr<VirtualClouds> clouds_of(std::size_t number, const world::World& world,
                                                   const ClosedLoopOptions& options) {
-    return world.scenario().sensing.scan ? std::make_unique<VirtualClouds>(world, options.seed, number) : nullptr;
+    std::unique_ptr<VirtualClouds> clouds;
+    if (world.scenario().sensing.scan) clouds = std::make_unique<VirtualClouds>(world, options.seed, number);
+    return clouds;
   }
   [[nodiscard]] world::VehicleTruth truth() const {
     return {autopilot.true_motion().position, autopilot.true_motion().velocity};
@@ -118,7 +121,7 @@ struct Member {
 /// A scenario's vehicles in flight.
 class Flight {
  public:
-  Flight(const world::World& world, const config::Settings& settings, const ClosedLoopOptions& options)
+  Flight(world::World& world, const config::Settings& settings, const ClosedLoopOptions& options)
       : world_(world),
         options_(options),
         timeline_(world.scenario().faults),
@@ -148,10 +151,13 @@ class Flight {
     befall(t);
     intents_.advance(t);
     std::vector<world::VehicleTruth> truths;
+    std::vector<Vec3> places;
     for (const auto& member : members_) {
       member->link.advance(t);
       truths.push_back(member->truth());
+      places.push_back(truths.back().position);
     }
+    world_.advance(t, places);
     const bool ended = judge_.watch(t, truths);
     for (const auto& member : members_)
       if (member->clouds) member->clouds->advance(t, member->autopilot);
@@ -211,7 +217,7 @@ class Flight {
     return result;
   }
 
-  const world::World& world_;
+  world::World& world_;
   const ClosedLoopOptions& options_;
   faults::FaultTimeline timeline_;
   TeamLink intents_;
@@ -224,7 +230,7 @@ class Flight {
 
 ClosedLoopResult fly_closed_loop(const config::Scenario& scenario, const config::Settings& settings,
                                  const ClosedLoopOptions& options) {
-  const world::World world(scenario);
+  world::World world(scenario);
   if (std::optional<ClosedLoopResult> blocked = ClosedLoopJudge(world).start_blocked()) return *std::move(blocked);
   return Flight(world, settings, options).fly();
 }

@@ -92,6 +92,11 @@ ObstacleState state(const config::WaypointsMotion& m, double t) {
   return {position, velocity};
 }
 
+// Alone it stands: who it chases is not known here.
+ObstacleState state(const config::ChaseMotion& m, double /*t*/) {
+  return {m.position};
+}
+
 double speed(const config::LinearMotion& m, double t0, double t1) {
   // The norm of a velocity that is linear in time is convex: it is largest at an end.
   return std::max((m.velocity + t0 * m.acceleration).norm(), (m.velocity + t1 * m.acceleration).norm());
@@ -118,6 +123,10 @@ double speed(const config::WaypointsMotion& m, double t0, double t1) {
     fastest = std::max(fastest, (m.points[i] - m.points[i - 1]).norm() / (m.times[i] - m.times[i - 1]));
   }
   return fastest;
+}
+
+double speed(const config::ChaseMotion& /*m*/, double /*t0*/, double /*t1*/) {
+  return 0.0;
 }
 
 /// A curve whose second derivative is at most `acceleration` is within a h²/8 of its chord over a time h.
@@ -159,6 +168,10 @@ double deviation(const config::WaypointsMotion& m, double t0, double t1) {
   const auto corner = std::upper_bound(m.times.begin(), m.times.end(), t0);
   const bool straight = corner == m.times.end() || *corner >= t1;
   return straight ? 0.0 : rough_deviation(speed(m, t0, t1), t1 - t0);
+}
+
+double deviation(const config::ChaseMotion& /*m*/, double /*t0*/, double /*t1*/) {
+  return 0.0;
 }
 
 }  // namespace

@@ -119,6 +119,13 @@ SweepResult sweep(const SphereSegment& a, const SphereSegment& b, double t0, dou
 }
 
 World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
+  for (std::size_t i = 0; i < scenario_.obstacles.size(); ++i) {
+    config::Motion& motion = scenario_.obstacles[i].motion;
+    const auto* chase = std::get_if<config::ChaseMotion>(&motion);
+    if (chase == nullptr) continue;
+    chasers_.push_back({i, chase->speed});
+    motion = config::WaypointsMotion{{0.0}, {chase->position}};
+  }
   bounds_.reserve(scenario_.obstacles.size());
   for (const config::Obstacle& obstacle : scenario_.obstacles) {
     bounds_.push_back(bounding_sphere(obstacle));
@@ -126,6 +133,27 @@ World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
   }
   for (const config::Obstacle& solid : scenario_.map) bounds_.push_back(bounding_sphere(solid));
   map_ = config::make_map(scenario_.map);
+}
+
+void World::advance(double t, std::span<const Vec3> vehicles) {
+  for (const Chaser& chaser : chasers_) {
+    auto& way = std::get<config::WaypointsMotion>(scenario_.obstacles[chaser.obstacle].motion);
+    while (way.times.back() <= t) {
+      const double begin = way.times.back();
+      const Vec3 from = way.points.back();
+      Vec3 to = from;
+      const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - from).norm() < (b - from).norm(); };
+      if (!vehicles.empty()) to = *std::min_element(vehicles.begin(), vehicles.end(), nearer);
+      const double most = chaser.speed * kChaseLeg;
+      const double left = (to - from).norm();
+      if (left > 0.0 && left < most) {  // it stands there for the rest
+        way.times.push_back(begin + left / chaser.speed);
+        way.points.push_back(to);
+      }
+      way.times.push_back(begin + kChaseLeg);
+      way.points.push_back(left > most ? Vec3(from + most / left * (to - from)) : to);
+    }
+  }
 }
 
 std::string World::name(int i) const {

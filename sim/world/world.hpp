@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ struct SphereSegment {
 [[nodiscard]] SweepResult sweep(const SphereSegment& a, const SphereSegment& b, double t0, double t1);
 
 /// A scenario brought to life. All times are scenario time in seconds; for t < 0 the clock does not run yet and the
-/// obstacles stand at their t = 0 positions. ENU, m. Immutable after construction, so all members are thread safe.
+/// obstacles stand at their t = 0 positions. ENU, m. Immutable but for advance(), so all other members are thread safe.
 /// Obstacle indices run from 0 in the order of the scenario file, and on with the solids of its map, which stand still;
 /// an index out of range is a programming error.
 class World {
@@ -49,6 +50,13 @@ class World {
   /// Copies the scenario, which must be as config::load_scenario checks it. O(obstacles).
   explicit World(config::Scenario scenario);
 
+  /// Tells those that chase where the vehicles are at `t`, which must not decrease. To be called at every step, before
+  /// anything is asked of that instant. One that chases flies straight, for kChaseLeg, to where the nearest vehicle was
+  /// last seen, and stands once it is there, or where there are no vehicles. Until told it stands.
+  void advance(double t, std::span<const Vec3> vehicles);
+  static constexpr double kChaseLeg = 0.5;  ///< s
+
+  /// As it was given, but that those that chase have the way that they have come so far.
   [[nodiscard]] const config::Scenario& scenario() const { return scenario_; }
   /// How many obstacles there are to be sensed: the solids of the map are none.
   [[nodiscard]] int obstacle_count() const { return static_cast<int>(scenario_.obstacles.size()); }
@@ -110,7 +118,13 @@ class World {
  private:
   [[nodiscard]] const planner::geometry::Sphere& bound(int i) const { return bounds_[static_cast<std::size_t>(i)]; }
 
+  struct Chaser {
+    std::size_t obstacle = 0;
+    double speed = 0.0;
+  };
+
   config::Scenario scenario_;
+  std::vector<Chaser> chasers_;
   std::vector<planner::geometry::Sphere> bounds_;                    ///< one per index, relative to its reference point
   std::vector<std::shared_ptr<const planner::base::Solid>> solids_;  ///< one per obstacle, about its bound's centre
   std::shared_ptr<const planner::geometry::StaticMap> map_;

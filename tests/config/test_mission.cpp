@@ -318,6 +318,8 @@ TEST(LoadMission, RefusesBadValues) {
       {"coast_s: 0.5", "coasts: 1", 11, "tracks.coasts", "1", "did you mean 'coast_s'?"},
       {"time_limit: 120", "acceptance_radius: 0", 12, "acceptance_radius", "0", "is not in (0, 100]"},
       {"time_limit: 120", "acceptance_radius: near", 12, "acceptance_radius", "near", "expected a number in (0, 100]"},
+      {"time_limit: 120", "hold_time: -1", 12, "hold_time", "-1", "is not in (0, 86400]"},
+      {"time_limit: 120", "hold_time: 120\ntime_limit: 120", 13, "time_limit", "120", "is not in (120, 86400]"},
       {"time_limit: 120", "time_limit: .inf", 12, "time_limit", ".inf", "not a finite number"},
       {"time_limit: 120", "time_limits: 120", 12, "time_limits", "120", "did you mean 'time_limit'?"},
       {"waypoints: [[5, 5, 2], [20, 0, 0]]\n", "", 1, "waypoints", "", "missing; expected a list of [x, y, z]"},

@@ -56,6 +56,14 @@ TEST(LoadScenario, TheTargetIsReachedAtItUnlessNearIsEnough) {
   EXPECT_EQ(loaded(replaced(kValidScenario, "time_limit: 60", "acceptance_radius: 0.8")).acceptance_radius, 0.8);
 }
 
+TEST(LoadScenario, AHoldAtTheTargetIsWithinTheTimeLimit) {
+  const double usual = loaded(replaced(kValidScenario, "time_limit: 60", "")).time_limit;
+  const Scenario holds = loaded(replaced(kValidScenario, "time_limit: 60", "hold_time: 40"));
+  EXPECT_EQ(holds.hold_time, 40.0);
+  EXPECT_EQ(holds.time_limit, usual + 40.0);
+  EXPECT_EQ(loaded(kValidScenario).hold_time, 0.0);
+}
+
 TEST(LoadScenario, ReadsEveryKey) {
   const Scenario s = loaded(kValidScenario);
   EXPECT_EQ(s.name, "example");
@@ -158,6 +166,8 @@ TEST(LoadScenario, RefusesBadTopLevelKeys) {
       {"target: [20, 0, 1.5]", "target: [1e6, 0, 1]", 4, "target[0]", "1e6", "is not in [-100000, 100000]"},
       {"target:", "tagret:", 4, "tagret", "[20, 0, 1.5]", "did you mean 'target'?"},
       {"time_limit: 60", "acceptance_radius: 101", 5, "acceptance_radius", "101", "is not in (0, 100]"},
+      {"time_limit: 60", "hold_time: 0", 5, "hold_time", "0", "is not in (0, 86400]"},
+      {"time_limit: 60", "hold_time: 70\ntime_limit: 60", 6, "time_limit", "60", "is not in (70, 1000000]"},
       {"time_limit: 60", "time_limit: 0", 5, "time_limit", "0", "is not in (0, 1000000]"},
       {"world: {min: [-5, -10, 0], max: [25, 10, 8]}", "world: {min: [-5, -10, 0], max: [25, -10, 8]}", 7,
        "world.max[1]", "-10", "is not above min, -10; expected a number in (-10, 100000]"},

@@ -54,6 +54,7 @@ TEST(ToYaml, EveryShippedScenarioReadsBack) {
 TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
   Scenario scenario = smallest();
   scenario.acceptance_radius = awkward(8);
+  scenario.hold_time = awkward(7);
   const LinearMotion linear{awkward_vector(1), awkward_vector(2), awkward_vector(3)};
   const BounceMotion bounce{{0.5, 0, 1e-300}, awkward_vector(4), {0, -1, 0}, {1, 1, 1}};
   const SineMotion sine{awkward_vector(5), awkward_vector(6), {0, 1.0 / 3.0, 7}, awkward_vector(7)};
@@ -65,6 +66,7 @@ TEST(ToYaml, EveryShapeAndMotionReadsBackBitForBit) {
                         {CapsuleShape{awkward(4), awkward_vector(5), awkward_vector(6)}, linear, {0, 0, awkward(8)}},
                         {SphereShape{12345678.0 / 1e5}, bounce},
                         {SphereShape{1}, WaypointsMotion{{0, awkward(3)}, {awkward_vector(8), awkward_vector(9)}}},
+                        {SphereShape{1}, ChaseMotion{awkward_vector(3), awkward(2)}},
                         {SphereShape{1}, LinearMotion{{1, 2, -0.0}, {-0.0, 0, 0}}}};
   scenario.sensing.scan = Scan{awkward(9), awkward(9), 3, 4, awkward(9), awkward(9), 0.02, Unknown::kOccupied};
   const Scenario again = read_back(scenario);

@@ -544,6 +544,23 @@ TEST(Companion, DoesNotLandOnWhatIsBelow) {
   }
 }
 
+TEST(Companion, ComesDownToLandOnceTheHoldTimeIsOver) {
+  config::Mission m = Loop::mission();
+  m.arrival = config::Arrival::kLand;
+  m.waypoints = {{3, 0, 4}};
+  m.hold_time = 4.0;
+  Loop loop(m);
+  loop.airborne({0, 0, 4}).fly();
+  while (loop.recorder.count("holding") == 0 && loop.now < 20.0) loop.turn();
+  EXPECT_EQ(loop.recorder.last("holding"), "for 4.0 s, out of the way of what comes");
+  loop.run(3.5);
+  EXPECT_NEAR(loop.last().position.z(), 4.0, 0.05);
+  EXPECT_EQ(loop.recorder.count("arrived"), 0);
+  loop.run(6.0);
+  EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kLand);
+  EXPECT_LT(loop.last().position.z(), 1.4);
+}
+
 TEST(Companion, LandsWhereTheMissionSaysSo) {
   config::Mission m = Loop::mission();
   m.arrival = config::Arrival::kLand;

@@ -61,6 +61,23 @@ TEST(Supervisor, ArrivalInHoldStreamsUntilHoldIsConfirmed) {
   EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
 }
 
+TEST(Supervisor, ItStaysAtTheTargetForTheHoldTime) {
+  config::Mission mission = Flight::mission();
+  mission.hold_time = 5.0;
+  Flight flight(mission);
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.turn();
+  EXPECT_TRUE(flight.supervisor.arrived());
+  flight.context.at_target = flight.context.at_end = false;  // out of the way of something
+  EXPECT_EQ(flight.run(3.0).motion, Motion::kFollow);
+  flight.context.at_target = flight.context.at_end = true;
+  EXPECT_EQ(flight.run(1.5).motion, Motion::kFollow);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 0);
+  flight.run(1.0);
+  EXPECT_EQ(flight.asked(vehicle::Command::kHold), 1);
+  EXPECT_EQ(flight.supervisor.reason(), "target reached");
+}
+
 // What comes there would hit a vehicle in HOLD: it goes on following plans, which hold clear.
 TEST(Supervisor, ATargetThatDoesNotStayFreeIsNotHeldIn) {
   Flight flight;

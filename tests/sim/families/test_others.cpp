@@ -58,7 +58,7 @@ TEST(OthersFamilies, AreKnownByNameAndNotAmongTheUsual) {
   const std::set<std::string_view> usual(world_families().begin(), world_families().end());
   const std::set<std::string_view> others(others_families().begin(), others_families().end());
   EXPECT_EQ(others.size(), others_families().size());
-  EXPECT_EQ(others.size(), 9U);
+  EXPECT_EQ(others.size(), 11U);
   for (const std::string_view family : others) {
     EXPECT_FALSE(usual.contains(family)) << family;
     EXPECT_FALSE(blocks_straight_line(family)) << family;
@@ -158,6 +158,38 @@ TEST(Fapp, FiftyDriftAmongTwentyThatStand) {
 }
 
 // Until it turns: x = x0 + A ((1 - cos ωt)/ω + 1.1 t). What is unknown, A and ω, follows from two places.
+TEST(SandoHover, ThreeTrefoilsAboutTheVehicle) {
+  for (std::uint64_t seed = 1; seed <= kWorlds; ++seed) {
+    const config::Scenario scenario = make_world("sando_hover", seed);
+    expect_limits(scenario, 0.1 * std::sqrt(3.0), 5.0, 5.0);
+    EXPECT_EQ(scenario.start, scenario.target);
+    EXPECT_EQ(scenario.hold_time, 60.0);
+    ASSERT_EQ(scenario.obstacles.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LT((expect_launched_trefoil(scenario.obstacles[i]) - Vec3(4, 4, 2)).norm(), 1e-12);
+      const auto& motion = std::get<config::TrefoilMotion>(scenario.obstacles[i].motion);
+      EXPECT_EQ(motion.slower, 2.0);
+      EXPECT_DOUBLE_EQ(motion.offset, 2 * pi * static_cast<double>(i) / 3);
+      EXPECT_NEAR((motion.center - scenario.start).norm(), 5.0, 1e-12);
+      const auto& next = std::get<config::TrefoilMotion>(scenario.obstacles[(i + 1) % 3].motion);
+      EXPECT_NEAR((motion.center - next.center).norm(), 5.0 * std::sqrt(3.0), 1e-12);
+    }
+  }
+}
+
+TEST(SandoChaser, ComesFromEightMetres) {
+  for (std::uint64_t seed = 1; seed <= kWorlds; ++seed) {
+    const config::Scenario scenario = make_world("sando_chaser", seed);
+    expect_limits(scenario, 0.1 * std::sqrt(3.0), 5.0, 5.0);
+    EXPECT_EQ(scenario.start, scenario.target);
+    ASSERT_EQ(scenario.obstacles.size(), 1U);
+    const auto& motion = std::get<config::ChaseMotion>(scenario.obstacles[0].motion);
+    EXPECT_EQ(motion.speed, 1.0);
+    EXPECT_NEAR((motion.position - scenario.start).norm(), 8.0, 1e-12);
+    EXPECT_EQ(motion.position.z(), 2.0);
+  }
+}
+
 TEST(Fapp, DriftsByItsFormulaUntilItTurns) {
   int checked = 0;
   for (const config::Obstacle& obstacle : make_world("fapp_50", 2).obstacles) {

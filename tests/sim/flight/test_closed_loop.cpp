@@ -292,6 +292,20 @@ TEST(ClosedLoop, ComesToATargetThatIsFreeForSecondsAndHoldsClearOfIt) {
   EXPECT_EQ(std::count_if(flown.hash.events.begin(), flown.hash.events.end(), arrived), 1);
 }
 
+// At 1 m/s from 8 m, for a minute: who does not move is hit after 8 s, and who only flees ends far away.
+TEST(ClosedLoop, HoldsItsPlaceChased) {
+  config::Scenario scenario = straight();
+  scenario.target = scenario.start;
+  scenario.hold_time = 60.0;
+  scenario.time_limit = 62.0;
+  scenario.obstacles = {{config::SphereShape{0.3}, config::ChaseMotion{{8, 0, 1.5}, 1.0}}};
+  const Flown flown = fly(scenario, shipped_settings());
+  EXPECT_EQ(flown.result.flight.outcome, bridge::supervisor::Outcome::kReached) << flown.result.flight.reason;
+  EXPECT_GT(flown.result.min_clearance, 0.2);
+  EXPECT_GT(flown.hash.truths, 2500);  // to the end
+  EXPECT_LT(flown.hash.farthest_aside, 6.0);
+}
+
 // Each turns beside the way again and again, then walks on across it as the vehicle comes.
 TEST(ClosedLoop, EvadesWhatWalksOnWhereItUsedToTurn) {
   constexpr double kSpeed = 1.5, kTurn = 1.2, kSwing = 1.5;  // m/s; m beside the way, and from there outwards

@@ -119,6 +119,19 @@ TEST(Simulator, TheClockWaitsForEveryVehicle) {
   EXPECT_GT(stage.publications.back().message.tracks.at(0).position.y(), -7.5);
 }
 
+TEST(Simulator, WhatChasesAVehicleComesOnceTheClockRuns) {
+  config::Scenario scenario = two_vehicles();
+  scenario.vehicles.clear();
+  scenario.obstacles = {{config::SphereShape{0.3}, config::ChaseMotion{{0, 9, 1.5}, 2.0}}};
+  Stage stage(scenario);
+  EXPECT_TRUE(stage.run(40.0, {scenario.start}, [&] { return stage.simulator->clock_runs(); }));
+  EXPECT_EQ(stage.publications.back().message.tracks.at(0).position, Vec3(0, 9, 1.5));
+  EXPECT_FALSE(stage.run(2.0, {scenario.start}, [] { return false; }));
+  const planner::base::Track& seen = stage.publications.back().message.tracks.at(0);
+  EXPECT_NEAR(seen.position.y(), 5.1, 0.3);
+  EXPECT_NEAR(seen.velocity.y(), -2.0, 0.1);
+}
+
 TEST(Simulator, SaysThatAFlightNeverCameToItsStart) {
   config::Scenario scenario = two_vehicles();
   scenario.vehicles.clear();

@@ -181,6 +181,32 @@ TEST(Sweep, HeadOnMeeting) {
   EXPECT_EQ(sweep.obstacle, 0);
 }
 
+TEST(World, WhatChasesFliesToWhereItLastSawTheNearestVehicle) {
+  World world(scenario_with({{config::SphereShape{0.1}, config::ChaseMotion{{0, 0, 1}, 2.0}}}));
+  EXPECT_EQ(world.obstacle(0, 0.0).position, Vec3(0, 0, 1));
+  EXPECT_EQ(world.obstacle(0, 0.0).velocity, Vec3::Zero());
+  const std::vector<Vec3> far_and_near{{9, 0, 1}, {0, 8, 1}};
+  world.advance(0.0, far_and_near);
+  EXPECT_EQ(world.obstacle(0, 0.0).velocity, Vec3(0, 2, 0));
+  // What it does not see yet does not turn it.
+  const std::vector<Vec3> ahead{{3, 1, 1}};
+  world.advance(0.3, ahead);
+  EXPECT_EQ(world.obstacle(0, 0.3).velocity, Vec3(0, 2, 0));
+  world.advance(0.5, ahead);
+  EXPECT_EQ(world.obstacle(0, 0.5).position, Vec3(0, 1, 1));
+  EXPECT_EQ(world.obstacle(0, 0.5).velocity, Vec3(2, 0, 0));
+  // It stands where it has come to its vehicle, and where there is none.
+  const std::vector<Vec3> near{{1.5, 1, 1}};
+  world.advance(1.02, near);
+  EXPECT_NEAR(world.obstacle(0, 1.24).position.x(), 1.48, 1e-9);
+  EXPECT_EQ(world.obstacle(0, 1.3).position, Vec3(1.5, 1, 1));
+  EXPECT_EQ(world.obstacle(0, 1.3).velocity, Vec3::Zero());
+  world.advance(1.5, {});
+  EXPECT_EQ(world.obstacle(0, 1.9).position, Vec3(1.5, 1, 1));
+  const SweepResult passed = world.sweep({0.5, 1, 1}, 0.6, {0.5, 1, 1}, 0.9);
+  EXPECT_NEAR(passed.min_clearance, -0.1 - kVehicleRadius, 1e-6);
+}
+
 // A ball of 1 cm at 100 m/s crosses the way of a standing vehicle's centre within a millisecond's step.
 TEST(Sweep, SeesWhatCrossesWithinAStep) {
   const World world(scenario_with({ball(0.01, {-50, 0, 0}, {100, 0, 0})}));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 namespace jink::tools::lab::oracle {
 
@@ -41,6 +42,10 @@ OracleResult judge_team(const config::Scenario& scenario, const OracleOptions& o
 
 // The proof is dearer than a narrow search, which most worlds need no more than; a wide one is the dearest.
 OracleResult judge(const config::Scenario& scenario, const OracleOptions& options) {
+  const auto chases = [](const config::Obstacle& obstacle) {
+    return std::holds_alternative<config::ChaseMotion>(obstacle.motion);
+  };
+  if (std::any_of(scenario.obstacles.begin(), scenario.obstacles.end(), chases)) return {};
   if (!scenario.vehicles.empty()) return judge_team(scenario, options);
   OracleResult judgement;
   std::optional<Flight> flight = find_flight(scenario, options, Effort::kNarrow);

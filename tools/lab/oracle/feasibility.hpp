@@ -52,7 +52,8 @@ struct OracleResult {
 
 /// The answers in one: a narrow search, then the proof that there is no flight, then a wide search, then
 /// find_tight_flight(). All are deterministic. Thread safe. A team (Scenario::vehicles) is solvable if find_flights()
-/// finds a flight for each, and impossible if one of them could not even get there alone.
+/// finds a flight for each, and impossible if one of them could not even get there alone. Unknown where something
+/// chases (config::ChaseMotion): what it does is no function of time. The functions below take it for standing.
 [[nodiscard]] OracleResult judge(const config::Scenario& scenario, const OracleOptions& options = {});
 
 /// How hard a search tries. A fine one is as wide as a wide one, in steps half as large.

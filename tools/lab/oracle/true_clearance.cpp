@@ -36,6 +36,7 @@ struct FastestDuring {
     }
     return fastest;
   }
+  double operator()(const config::ChaseMotion& /*m*/) const { return 0.0; }  // it stands where it began
 };
 
 /// One straight piece of the path against one obstacle.
