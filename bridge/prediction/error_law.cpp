@@ -14,7 +14,7 @@ constexpr double kFirst = 0.1;        // deviations, the innermost shell's outer
 constexpr double kGrowth = 1.25;      // of the radii, from shell to shell
 constexpr double kAssumed = 40.0;     // movers seen, that what is assumed counts for
 constexpr double kMostSeen = 5000.0;  // from which on the oldest count less and less
-constexpr double kScale = 0.64;       // of the heavy-tailed law
+constexpr double kScale = 0.68;       // of the heavy-tailed law
 constexpr int kPieces = 8;            // of a shell, that densities are summed over
 
 using Radii = std::array<double, ErrorLaw::kShells>;

@@ -19,6 +19,7 @@ constexpr std::array kAtFirst = {0.44, 0.44, 0.02, 0.1};  // probabilities: nois
 constexpr double kGate = 45.0;               // squared Mahalanobis distance that noise has once in ten million
 constexpr double kLeastProbability = 0.002;  // of a model
 constexpr double kLeastSigma = 0.01;         // m, m/s
+constexpr double kAxesAcross = 2.0;          // of an acceleration across the velocity
 constexpr double kLongest = 1.0;             // s, between measurements, after which the estimate begins anew
 
 Matrix3 transition(double dt, std::size_t model) {
@@ -45,6 +46,12 @@ Matrix3 process_noise(double dt, std::size_t model) {
   q(0, 1) = q(1, 0) = dt2 / 2.0;
   q(1, 1) = dt;
   return kSteadyNoise[model] * q;
+}
+
+/// The part across the velocity.
+Vec3 turning_part(const Vec3& acceleration, const Vec3& velocity) {
+  const double square = velocity.squaredNorm();
+  return square > 0.0 ? Vec3(acceleration - acceleration.dot(velocity) / square * velocity) : acceleration;
 }
 
 }  // namespace
@@ -152,7 +159,9 @@ void ImmFilter::apply(planner::base::Track& track) const {
   }
   track.position = state.row(0);
   track.velocity = state.row(1);
-  track.acceleration = state.row(2);
+  track.acceleration = turning_part(state.row(2), track.velocity);
+  const double believed = track.acceleration.squaredNorm();
+  if (believed > 0.0) track.acceleration *= believed / (believed + kAxesAcross * covariance(2, 2));
   track.position_sigma = std::max(kLeastShare * track.position_sigma, std::sqrt(covariance(0, 0)));
   track.velocity_sigma = std::max(kLeastShare * track.velocity_sigma, std::sqrt(covariance(1, 1)));
 }

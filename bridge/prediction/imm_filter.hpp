@@ -22,7 +22,9 @@ class ImmFilter {
   void update(double dt, const planner::base::Track& measured);
 
   /// The estimate at the instant of the newest measurement in place of that: position, velocity, acceleration and the
-  /// sigmas. No sigma falls below kLeastShare of the measured one: what a writer reports may be filtered already.
+  /// sigmas. The acceleration is that of a turn, across the velocity, the less of it the less sure it is (by the shares
+  /// of its square and its variance): to go on at a speed that changes foresaw real people and drones worse. No sigma
+  /// falls below kLeastShare of the measured one: what a writer reports may be filtered already.
   void apply(planner::base::Track& track) const;
 
   static constexpr double kLeastShare = 0.17;

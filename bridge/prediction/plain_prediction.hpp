@@ -8,7 +8,8 @@
 namespace jink::bridge::prediction {
 
 /// The track at `now`, which is its stamp or later: constant acceleration for at most `trust` seconds, then constant
-/// velocity. Its age counts from the stamp.
+/// velocity. Of a track with sigmas that is the acceleration which leads where a coordinated turn does in that time
+/// (Bar-Shalom, Li, Kirubarajan 2001, section 11.7). Its age counts from the stamp.
 [[nodiscard]] planner::base::Track predict(const base::Stamped<planner::base::Track, base::Frame::kLocal>& track,
                                            double now, double trust);
 

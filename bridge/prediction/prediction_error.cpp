@@ -16,7 +16,7 @@ constexpr double kMemory = 1.0;      // s, time constant with which errors are f
 constexpr double kPrior = 0.1;       // s⁴, weight of what is assumed of a new track
 constexpr double kNoise = 1e-3;      // m, m/s
 constexpr double kSlack = 1e-3;      // s
-constexpr double kAbout = 0.11;      // s, before and after an instant: four periods of 20 Hz
+constexpr double kAbout = 0.16;      // s, before and after an instant: six periods of 20 Hz
 
 double square(double x) {
   return x * x;

@@ -64,7 +64,7 @@ TEST(ErrorLaw, TailsAreHeavyToBeginWith) {
   const ErrorLaw law = ErrorLaw::heavy_tailed();
   for (const double share : {0.5, 0.9, 0.99}) {
     int inside = 0;
-    for (int i = 0; i < kDraws; ++i) inside += 0.64 * heavy_tailed(random).norm() < law.region(share) ? 1 : 0;
+    for (int i = 0; i < kDraws; ++i) inside += 0.68 * heavy_tailed(random).norm() < law.region(share) ? 1 : 0;
     EXPECT_NEAR(static_cast<double>(inside) / kDraws, share, 0.01);
   }
 }

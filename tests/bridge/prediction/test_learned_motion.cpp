@@ -337,14 +337,17 @@ struct Noisy {
 
 // In a crowd the fits come in turn, each track's more than a trial apart. What has proved right stays believed between.
 TEST(MotionLearner, IsBelievedBetweenFitsThatAreRare) {
-  Noisy noisy;
   int believed = 0, asked = 0;
-  for (double t = 0.0; t < 24.0; t += kStep) {
-    noisy.observe(swing, t, 1.3);
-    if (t < 16.0) continue;
-    const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.all);
-    ++asked;
-    believed += forecast && relied_on(*forecast) ? 1 : 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Noisy noisy;
+    noisy.random = RandomStream(seed);
+    for (double t = 0.0; t < 24.0; t += kStep) {
+      noisy.observe(swing, t, 1.3);
+      if (t < 16.0) continue;
+      const auto forecast = noisy.learned.forecast(t, t, noisy.last, noisy.all);
+      ++asked;
+      believed += forecast && relied_on(*forecast) ? 1 : 0;
+    }
   }
   EXPECT_GT(believed, 9 * asked / 10);
 }

@@ -31,10 +31,10 @@ void expect_true(const Calibration& calibration, double off) {
 TEST(Calibration, MoversOfAllFamiliesAreInTheRegionsAsOftenAsIsStated) {
   Calibration all;
   for (const std::string_view family : sim::families::world_families()) {
-    for (const std::uint64_t seed : {101U, 102U})
+    for (const std::uint64_t seed : {101U, 102U, 103U, 104U})
       all.add(watch_realistic(sim::families::make_world(family, seed), seed));
   }
-  EXPECT_GT(all.predictions(), 20000.0);
+  EXPECT_GT(all.predictions(), 40000.0);
   expect_true(all, kOff);
 }
 
