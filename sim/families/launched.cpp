@@ -43,6 +43,16 @@ void set_limits(config::Scenario& scenario, const OthersLimits& limits) {
   vehicle.max_jerk = limits.jerk;
 }
 
+namespace {
+
+void begin_as_sando(config::Scenario& scenario) {
+  set_limits(scenario, {0.1 * std::numbers::sqrt3, 5.0, 5.0, 20.0, 100.0});
+  scenario.start = {0, 0, 2};
+  scenario.world = planner::base::Box{{-200, -200, 0.5}, {200, 200, 6}};
+}
+
+}  // namespace
+
 // SANDO (MIT-ACL, github.com/mit-acl/sando, 93b2eed): launch/dyn_obstacles.launch.py for the obstacles,
 // config/sando.yaml for the vehicle's limits, its box of 0.2 m and heights of 0.5 to 6 m, run_all_dynamic_benchmarks.sh
 // for start, goal and time limit, 65 % that move as in run_sim.py. differs: the vehicle is the sphere around that box;
@@ -51,11 +61,9 @@ void build_sando_launched(config::Scenario& scenario, RandomStream& random, int 
   constexpr double kMoving = 0.65;  // share of all
   constexpr double kPoles = 0.35;   // share of those that stand
   const planner::base::Box centers{{5, -6, 0.5}, {100, 6, 4.5}};
-  set_limits(scenario, {0.1 * std::numbers::sqrt3, 5.0, 5.0, 20.0, 100.0});
-  scenario.start = {0, 0, 2};
+  begin_as_sando(scenario);
   scenario.target = {105, 0, 2};
   scenario.time_limit = 100.0;
-  scenario.world = planner::base::Box{{-200, -200, 0.5}, {200, 200, 6}};
   const int moving = static_cast<int>(kMoving * count);
   for (int i = 0; i < count; ++i) {
     const Vec3 center = random_point(random, centers);
@@ -73,11 +81,10 @@ void build_sando_launched(config::Scenario& scenario, RandomStream& random, int 
 
 namespace {
 
-/// The vehicle of the launched worlds, which stays where it starts for a minute, in the open.
+/// It stays where it starts for a minute.
 void hover_as_sando(config::Scenario& scenario) {
-  set_limits(scenario, {0.1 * std::numbers::sqrt3, 5.0, 5.0, 20.0, 100.0});
-  scenario.start = scenario.target = {0, 0, 2};
-  scenario.world = planner::base::Box{{-200, -200, 0.5}, {200, 200, 6}};
+  begin_as_sando(scenario);
+  scenario.target = scenario.start;
   scenario.hold_time = 60.0;
   scenario.time_limit = 90.0;
 }
@@ -100,8 +107,8 @@ void build_sando_hover(config::Scenario& scenario, RandomStream& random) {
 
 // SANDO's adversarial test, generate_adversarial_test_yaml() in run_sim.py: another vehicle, of the same size, at 1 m/s
 // for where this one is, twice a second. differs: theirs has a planner, tells what it plans and comes from x = 8 m;
-// ours goes straight, is seen alone, and comes from 8 m at the same height, from where the seed says. The chase lasts a
-// minute and the vehicle is never left alone, so it ends at the time limit.
+// ours goes straight, is seen alone, and comes from 8 m at the same height, from where the seed says. It never leaves
+// the vehicle alone, so the flight ends at the time limit.
 void build_sando_chaser(config::Scenario& scenario, RandomStream& random) {
   constexpr double kAway = 8.0;   // m
   constexpr double kSpeed = 1.0;  // m/s

@@ -151,13 +151,11 @@ class Flight {
     befall(t);
     intents_.advance(t);
     std::vector<world::VehicleTruth> truths;
-    std::vector<Vec3> places;
     for (const auto& member : members_) {
       member->link.advance(t);
       truths.push_back(member->truth());
-      places.push_back(truths.back().position);
     }
-    world_.advance(t, places);
+    world_.advance(t, truths);
     const bool ended = judge_.watch(t, truths);
     for (const auto& member : members_)
       if (member->clouds) member->clouds->advance(t, member->autopilot);

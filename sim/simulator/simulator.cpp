@@ -61,7 +61,7 @@ void Simulator::step() {
   watch_faults();
   for (Vehicle& vehicle : vehicles_) vehicle.endpoint->poll(now_);
   watch_clock();
-  if (clock_runs()) world_.advance(scenario_time(), positions());
+  if (clock_runs()) world_.advance(scenario_time(), truth());
   judge();
   publish();
   if (steps_ % kTruthSteps == 0) tell_truth();

@@ -4,16 +4,9 @@
 
 #include <span>
 
-#include "planner/base/types.hpp"
 #include "sim/world/world.hpp"
 
 namespace jink::sim::world {
-
-/// The true motion of one vehicle, ENU.
-struct VehicleTruth {
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-};
 
 class TruthObserver {
  public:

@@ -135,23 +135,25 @@ World::World(config::Scenario scenario) : scenario_(std::move(scenario)) {
   map_ = config::make_map(scenario_.map);
 }
 
-void World::advance(double t, std::span<const Vec3> vehicles) {
+void World::advance(double t, std::span<const VehicleTruth> vehicles) {
   for (const Chaser& chaser : chasers_) {
     auto& way = std::get<config::WaypointsMotion>(scenario_.obstacles[chaser.obstacle].motion);
     while (way.times.back() <= t) {
-      const double begin = way.times.back();
       const Vec3 from = way.points.back();
-      Vec3 to = from;
-      const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - from).norm() < (b - from).norm(); };
-      if (!vehicles.empty()) to = *std::min_element(vehicles.begin(), vehicles.end(), nearer);
-      const double most = chaser.speed * kChaseLeg;
+      const auto distance = [&](const VehicleTruth& vehicle) { return (vehicle.position - from).norm(); };
+      const auto nearest = std::min_element(vehicles.begin(), vehicles.end(),
+                                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+      const Vec3 to = vehicles.empty() ? from : nearest->position;
       const double left = (to - from).norm();
-      if (left > 0.0 && left < most) {  // it stands there for the rest
-        way.times.push_back(begin + left / chaser.speed);
+      const double begin = way.times.back();
+      const double end = begin + kChaseLeg;
+      const double there = left > 0.0 ? begin + left / chaser.speed : begin;
+      if (there > begin && there < end) {  // where it stands for the rest
+        way.times.push_back(there);
         way.points.push_back(to);
       }
-      way.times.push_back(begin + kChaseLeg);
-      way.points.push_back(left > most ? Vec3(from + most / left * (to - from)) : to);
+      way.times.push_back(end);
+      way.points.push_back(there > end ? Vec3(from + chaser.speed * kChaseLeg / left * (to - from)) : to);
     }
   }
 }

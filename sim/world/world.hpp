@@ -18,6 +18,12 @@
 
 namespace jink::sim::world {
 
+/// The true motion of one vehicle, ENU.
+struct VehicleTruth {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+};
+
 /// The nearest that the vehicle came to any obstacle, or another vehicle, on a straight way.
 struct SweepResult {
   double min_clearance = planner::base::kInfinity;  ///< m, from the vehicle's sphere to the obstacle's true surface
@@ -53,7 +59,7 @@ class World {
   /// Tells those that chase where the vehicles are at `t`, which must not decrease. To be called at every step, before
   /// anything is asked of that instant. One that chases flies straight, for kChaseLeg, to where the nearest vehicle was
   /// last seen, and stands once it is there, or where there are no vehicles. Until told it stands.
-  void advance(double t, std::span<const Vec3> vehicles);
+  void advance(double t, std::span<const VehicleTruth> vehicles);
   static constexpr double kChaseLeg = 0.5;  ///< s
 
   /// As it was given, but that those that chase have the way that they have come so far.

@@ -78,6 +78,20 @@ TEST(Supervisor, ItStaysAtTheTargetForTheHoldTime) {
   EXPECT_EQ(flight.supervisor.reason(), "target reached");
 }
 
+TEST(Supervisor, ATimeLimitInTheHoldTimeSaysSo) {
+  config::Mission mission = Flight::mission();
+  mission.hold_time = mission.time_limit;  // it begins on the way
+  Flight flight(mission);
+  flight.fly().context.at_target = flight.context.at_end = true;
+  flight.run(mission.time_limit + 1.0);
+  flight.context.at_rest = true;
+  flight.run(1.0);
+  flight.state.mode = vehicle::FlightMode::kHold;
+  flight.turn();
+  EXPECT_EQ(flight.supervisor.outcome(), Outcome::kReached);
+  EXPECT_NE(flight.supervisor.reason().find("before its hold_time"), std::string::npos) << flight.supervisor.reason();
+}
+
 // What comes there would hit a vehicle in HOLD: it goes on following plans, which hold clear.
 TEST(Supervisor, ATargetThatDoesNotStayFreeIsNotHeldIn) {
   Flight flight;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -185,18 +186,18 @@ TEST(World, WhatChasesFliesToWhereItLastSawTheNearestVehicle) {
   World world(scenario_with({{config::SphereShape{0.1}, config::ChaseMotion{{0, 0, 1}, 2.0}}}));
   EXPECT_EQ(world.obstacle(0, 0.0).position, Vec3(0, 0, 1));
   EXPECT_EQ(world.obstacle(0, 0.0).velocity, Vec3::Zero());
-  const std::vector<Vec3> far_and_near{{9, 0, 1}, {0, 8, 1}};
+  const std::vector<VehicleTruth> far_and_near{{{9, 0, 1}}, {{0, 8, 1}}};
   world.advance(0.0, far_and_near);
   EXPECT_EQ(world.obstacle(0, 0.0).velocity, Vec3(0, 2, 0));
   // What it does not see yet does not turn it.
-  const std::vector<Vec3> ahead{{3, 1, 1}};
+  const std::vector<VehicleTruth> ahead{{{3, 1, 1}}};
   world.advance(0.3, ahead);
   EXPECT_EQ(world.obstacle(0, 0.3).velocity, Vec3(0, 2, 0));
   world.advance(0.5, ahead);
   EXPECT_EQ(world.obstacle(0, 0.5).position, Vec3(0, 1, 1));
   EXPECT_EQ(world.obstacle(0, 0.5).velocity, Vec3(2, 0, 0));
   // It stands where it has come to its vehicle, and where there is none.
-  const std::vector<Vec3> near{{1.5, 1, 1}};
+  const std::vector<VehicleTruth> near{{{1.5, 1, 1}}};
   world.advance(1.02, near);
   EXPECT_NEAR(world.obstacle(0, 1.24).position.x(), 1.48, 1e-9);
   EXPECT_EQ(world.obstacle(0, 1.3).position, Vec3(1.5, 1, 1));
@@ -205,6 +206,20 @@ TEST(World, WhatChasesFliesToWhereItLastSawTheNearestVehicle) {
   EXPECT_EQ(world.obstacle(0, 1.9).position, Vec3(1.5, 1, 1));
   const SweepResult passed = world.sweep({0.5, 1, 1}, 0.6, {0.5, 1, 1}, 0.9);
   EXPECT_NEAR(passed.min_clearance, -0.1 - kVehicleRadius, 1e-6);
+}
+
+// A vehicle so near that a double cannot tell when it would be there.
+TEST(World, WhatHasCaughtAVehicleStandsThere) {
+  World world(scenario_with({{config::SphereShape{0.1}, config::ChaseMotion{{0, 0, 1}, 2.0}}}));
+  world.advance(1.0, {});
+  const std::vector<VehicleTruth> there{{{1e-17, 0, 1}}};
+  world.advance(1.5, there);
+  for (const double t : {1.5, 1.6, 2.0}) {
+    EXPECT_TRUE(world.obstacle(0, t).position.isApprox(Vec3(0, 0, 1), 1e-12)) << t;
+    EXPECT_LT(world.obstacle(0, t).velocity.norm(), 1e-12) << t;
+  }
+  const std::vector<double>& times = std::get<config::WaypointsMotion>(world.spec(0).motion).times;
+  EXPECT_EQ(std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()), times.end());
 }
 
 // A ball of 1 cm at 100 m/s crosses the way of a standing vehicle's centre within a millisecond's step.
