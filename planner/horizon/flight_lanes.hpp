@@ -20,7 +20,7 @@ struct FlightLanes {
       velocity;                         ///< now, m/s
   PointLanes<kLanes> begin,             ///< the leg's first offset, m
       drift,                            ///< the offset's mean change in a second, m/s
-      onward,                           ///< what of that is along the axis
+      onward,                           ///< what of that is along the axis and does not lead back
       wished;                           ///< the leg's last offset, m
 
   /// At the start of the horizon. Keeps references to both arguments' data.
@@ -46,13 +46,15 @@ struct FlightLanes {
     aim(0, asked, reach, base.x(), wished.x);
     aim(1, asked, reach, base.y(), wished.y);
     aim(2, asked, reach, base.z(), wished.z);
+    const double mean_speed = scene.mean_speed[k];
     const double per_second = 1.0 / (scene.steps_per_leg * scene.step);
     for (std::size_t i = 0; i < kLanes; ++i) {
       drift.x[i] = (wished.x[i] - begin.x[i]) * per_second;
       drift.y[i] = (wished.y[i] - begin.y[i]) * per_second;
       drift.z[i] = (wished.z[i] - begin.z[i]) * per_second;
       const Vec3& axis = scene.frame.axis;
-      const double ahead = drift.x[i] * axis.x() + drift.y[i] * axis.y() + drift.z[i] * axis.z();
+      const double along = drift.x[i] * axis.x() + drift.y[i] * axis.y() + drift.z[i] * axis.z();
+      const double ahead = along > -mean_speed ? along : -mean_speed;
       onward.x[i] = ahead * axis.x();
       onward.y[i] = ahead * axis.y();
       onward.z[i] = ahead * axis.z();

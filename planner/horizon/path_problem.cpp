@@ -62,6 +62,7 @@ PathProblem::PathProblem(const base::HorizonSettings& settings)
   scene_.reach.resize(index(settings.waypoints));
   scene_.unobstructed.resize(index(scene_.steps + 1));
   scene_.speed.resize(index(scene_.steps + 1));
+  scene_.mean_speed.resize(index(settings.waypoints));
   scene_.uneven.resize(index(scene_.steps));
   unobstructed_.resize(index(scene_.steps + 1));
   where_.resize(index(scene_.steps));
@@ -123,13 +124,15 @@ void PathProblem::unobstructed_flight() {
 }
 
 // An offset along the axis changes as unobstructed flight gets on: evenly it would have a vehicle that sets out, and is
-// to be slower than that, fly back at first. At rest it changes evenly.
+// to be slower than that, fly back at first. At rest it changes evenly; so does what leads back, from the start on: a
+// vehicle that put it off would put it off again in each plan.
 void PathProblem::change_offsets() {
   const double leg = scene_.steps_per_leg * settings_.step;
   for (int n = 0; n < scene_.steps; ++n) {
     const int i = n % scene_.steps_per_leg;
     const double begun = unobstructed_[index(n - i)];
     const double whole = unobstructed_[index(n - i + scene_.steps_per_leg)] - begun + kEven * leg;
+    scene_.mean_speed[index(n / scene_.steps_per_leg)] = whole / leg;
     const double since = i * settings_.step;
     const double changed = (unobstructed_[index(n)] - begun + kEven * since) / whole * leg;
     const double rate = (scene_.speed[index(n + 1)] + kEven) / whole * leg;

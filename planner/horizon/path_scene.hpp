@@ -67,6 +67,7 @@ struct PathScene {
   std::vector<Reach> reach;        ///< of each waypoint
   std::vector<Vec3> unobstructed;  ///< position after each step, the start first
   std::vector<double> speed;       ///< along the axis, likewise
+  std::vector<double> mean_speed;  ///< along the axis in each leg
   std::vector<double> uneven;      ///< of each step: wished on top, in shares of the offset's mean drift along the axis
   double cruise = 0.0;             ///< along the axis, the climb limit considered
   double unobstructed_time = 0.0;  ///< to the target

@@ -168,6 +168,28 @@ TEST(PathProblem, WhoSetsOutSlowlyDoesNotFlyBackFirst) {
   }
 }
 
+// For the same reason: who is to be 2 m farther back in a second, and puts that off, puts it off in each plan.
+TEST(PathProblem, WhoIsToFlyBackBeginsAtOnce) {
+  for (const Vec3& target : kTargets) {
+    PathProblem problem{base::HorizonSettings{}};
+    const PathRequest r = request(target);
+    problem.prepare(r);
+    const Vec3 axis = (target - r.position).normalized();
+    for (const double speed : {0.3, 1.0}) {
+      base::TimedPath back;
+      for (int n = 0; n <= problem.steps(); ++n) {
+        const double t = 0.1 * n;
+        back.push_back({t, r.position - std::min(2.0, speed * t) * axis, Vec3::Zero(), Vec3::Zero()});
+      }
+      std::vector<double> x = zeros(problem);
+      problem.encode_path(back, x);
+      const base::TimedPath path = problem.motion(x);
+      EXPECT_LT(base::sample(path, 0.5).velocity.dot(axis), -0.8 * speed) << speed;
+      EXPECT_NEAR(base::sample(path, 1.0).velocity.dot(axis), -speed, 0.2 * speed) << speed;
+    }
+  }
+}
+
 TEST(PathProblem, ZeroVariablesAreTheCheapestWithoutObstacles) {
   PathProblem problem{base::HorizonSettings{}};
   PathRequest r = request();
