@@ -99,6 +99,7 @@ constexpr Field<HorizonSettings> kHorizon[] = {
     {"margin", &HorizonSettings::margin, closed(0, 100)},
     {"sigma_factor", &HorizonSettings::sigma_factor, closed(0, 100)},
     {"track_acceleration", &HorizonSettings::track_acceleration, closed(0, 1000)},
+    {"sudden_change", &HorizonSettings::sudden_change, closed(0, 1000)},
     {"acceleration_trust", &HorizonSettings::acceleration_trust, closed(0, 600)},
     {"clearance_limit", &HorizonSettings::clearance_limit, closed(0, 1000)},
     {"time_weight", &HorizonSettings::time_weight, closed(0, 1000)},

@@ -250,6 +250,7 @@ void Planning::demand(const vehicle::VehicleState& state, double margin, planner
   request.margin = in_world ? planner::base::hypotenuse(margin, state.position_sigma) : margin;
   request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
   request.track_acceleration = settings_.horizon.track_acceleration;
+  request.sudden_change = settings_.horizon.sudden_change;
   request.acceleration_trust = settings_.horizon.acceleration_trust;
 }
 

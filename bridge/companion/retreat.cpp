@@ -12,8 +12,7 @@
 namespace jink::bridge::companion {
 namespace {
 
-constexpr double kReaction = 0.45;  // s, from when something moves otherwise to another way: delay, filter, commitment
-constexpr double kEvading = 0.5;    // of the acceleration for emergencies, that evasions count with
+constexpr double kEvading = 0.5;      // of the acceleration for emergencies, that evasions count with
 constexpr double kLookedAhead = 1.5;  // s, along what is flown,
 constexpr double kEntry = 2.0;        // s, and the way on,
 constexpr double kStay = 2.5;         // s, and to a refuge
@@ -88,7 +87,8 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
   });
   const double radius = request.vehicle.radius;
   const auto risk_of = [&](const planner::base::TimedPath& path, double until, double evasion) {
-    return prediction::contact_risk(path, predictions, laws, radius, until, {kReaction, evasion});
+    return prediction::contact_risk(path, predictions, laws, radius, until,
+                                    {planner::base::HorizonSettings::kReaction, evasion});
   };
   const double evasion = kEvading * problem_.settings().planned_acceleration(request.vehicle.max_acceleration);
   risk_ = risk_of(flown, kLookedAhead, evasion);

@@ -47,8 +47,12 @@ class TrackMotion {
     const double ahead = t + track_.age;
     const double moved = track_.velocity_sigma * ahead;
     const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
-    return std::min(clearance.limit,
-                    clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead);
+    const double unsure = clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead;
+    return std::max(sigma > 0.0 ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
+  }
+  /// A bound of uncertainty().
+  [[nodiscard]] static double most_uncertainty(const Clearance& clearance) {
+    return std::max(clearance.evasion, clearance.limit);
   }
 
  private:
@@ -89,6 +93,7 @@ class PathMotion {
     return std::min(clearance.limit,
                     clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
   }
+  [[nodiscard]] static double most_uncertainty(const Clearance& clearance) { return clearance.limit; }
 
  private:
   const geometry::KnownPath& path_;
@@ -168,19 +173,20 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
+  const double room = motion.most_uncertainty(clearance);
   const bool is_solid = motion.body().solid != nullptr;
   const double passed = (speed + fastest) * step;
   const double slack = kSlack + (is_solid ? turning_slack(std::abs(motion.body().yaw_rate) * step, passed,
-                                                          hard + clearance.limit + most_bend + motion.radius())
+                                                          hard + room + most_bend + motion.radius())
                                           : 0.0);
-  const double ever = hard + clearance.limit + speed * horizon + most_bend + slack;
+  const double ever = hard + room + speed * horizon + most_bend + slack;
   if (squared_distance(motion.position(0.0), everywhere) >= ever * ever) return;
   const std::size_t before = found_.size();
   for (const Group& group : groups_) {
     const double begin = step * static_cast<double>(group.first);
     if (begin >= motion.until()) break;
     const double half = 0.5 * step * static_cast<double>(group.last - group.first);
-    const double wanted = hard + clearance.limit + speed * half + most_bend + slack;
+    const double wanted = hard + room + speed * half + most_bend + slack;
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
@@ -191,7 +197,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.middle = 0.5 * (obstacle.from + obstacle.to);
       const double moved = 0.5 * (obstacle.to - obstacle.from).norm();
       const double bent = hard + motion.bend(static_cast<double>(n) * step, end);
-      const double most = bent + clearance.limit + moved + slack;
+      const double most = bent + room + moved + slack;
       const double distance = squared_distance(obstacle.middle, where[n]);
       if (distance >= most * most) continue;
       obstacle.hard = bent;

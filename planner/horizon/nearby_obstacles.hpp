@@ -15,10 +15,11 @@ namespace jink::planner::horizon {
 /// What an obstacle is worth keeping away from: its radius and `hard` more, and `soft` beyond that as its track's
 /// uncertainty asks for.
 struct Clearance {
-  double hard = 0.0;                            ///< the vehicle's radius and the margin
-  double sigma_factor = 0.0;                    ///< standard deviations of the position that are kept free
-  double track_acceleration = 0.0;              ///< what a track's acceleration may be off by, m/s²
-  double limit = 0.0;                           ///< the most that uncertainty may ask for
+  double hard = 0.0;                ///< the vehicle's radius and the margin
+  double sigma_factor = 0.0;        ///< standard deviations of the position that are kept free
+  double track_acceleration = 0.0;  ///< what a track's acceleration may be off by, m/s²
+  double evasion = 0.0;             ///< of noisy tracks, the least: who moves otherwise is evaded with it, m
+  double limit = 0.0;               ///< the most that uncertainty may ask for
   double acceleration_trust = base::kInfinity;  ///< as in predict_position
   double hard_beside_standing = 0.0;            ///< `hard` of what stands
 };

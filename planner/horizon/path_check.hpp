@@ -8,8 +8,8 @@
 
 namespace jink::planner::horizon {
 
-/// Whether all numbers are ones to plan with (planner/geometry/validity.hpp), margins and track_acceleration not below
-/// 0, and what stands does. O(tracks + points of the paths).
+/// Whether all numbers are ones to plan with (planner/geometry/validity.hpp), margins, track_acceleration and
+/// sudden_change not below 0, and what stands does. O(tracks + points of the paths).
 [[nodiscard]] bool is_valid(const PathRequest& request);
 
 /// Whether a path can be the plan before, of which the request is the continuation: it is at the request's position at

@@ -40,6 +40,7 @@ PathRequest PathRequest::with(const base::HorizonSettings& settings) {
   PathRequest request;
   request.margin = settings.margin;
   request.track_acceleration = settings.track_acceleration;
+  request.sudden_change = settings.sudden_change;
   request.acceleration_trust = settings.acceleration_trust;
   return request;
 }
@@ -140,10 +141,15 @@ void PathProblem::change_offsets() {
   }
 }
 
+// What changes its velocity at once gains that much on the vehicle for as long as it takes to react, and less from then
+// on, until the vehicle that evades is as fast.
 Clearance PathProblem::clearance() const {
+  const double evading = settings_.for_emergencies().planned_acceleration(request_.vehicle.max_acceleration);
+  const double gained = base::HorizonSettings::kReaction + 0.5 * request_.sudden_change / evading;
   return {request_.vehicle.radius + request_.margin,
           settings_.sigma_factor,
           request_.track_acceleration,
+          request_.sudden_change * std::min(gained, horizon()),
           settings_.clearance_limit,
           request_.acceleration_trust,
           request_.vehicle.radius + request_.margin_beside_standing()};

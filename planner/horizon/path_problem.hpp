@@ -31,6 +31,7 @@ struct PathRequest {
   double margin = 0.0;                           ///< kept from every obstacle on top of the radii
   double standing_margin = base::kInfinity;      ///< kept from what stands, where that is less
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
+  double sudden_change = 0.0;                    ///< by which a noisy track's velocity may be another at once, m/s
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
   bool visit = false;                            ///< to have been at the target is enough: it need not stay free

@@ -55,6 +55,7 @@ verify::Plan plan(Planner& planner, const Vector& position, const Vector& veloci
   if (standing != nullptr) request.standing = *standing;
   request.margin = margin.value_or(settings.margin);
   request.track_acceleration = settings.track_acceleration;
+  request.sudden_change = settings.sudden_change;
   request.acceleration_trust = settings.acceleration_trust;
   const base::TimedPath none;
   return planner.plan(request, previous != nullptr ? *previous : none,

@@ -151,7 +151,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
   base::TimedPoint& point = path.points[n.below(path.points.size())];
   const auto axis = static_cast<Eigen::Index>(n.below(3));
-  const std::array<double*, 28> fields{&r.position[axis],
+  const std::array<double*, 29> fields{&r.position[axis],
                                        &r.velocity[axis],
                                        &r.target[axis],
                                        &r.volume.min[axis],
@@ -163,6 +163,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
                                        &r.vehicle.max_acceleration,
                                        &r.margin,
                                        &r.track_acceleration,
+                                       &r.sudden_change,
                                        &r.acceleration_trust,
                                        &track.position[axis],
                                        &track.velocity[axis],
@@ -212,6 +213,7 @@ Case any_case(Numbers& n, Numbers& of_bodies) {
   }
   r.margin = n.in(0.0, 0.5);
   r.track_acceleration = n.in(0.0, 1.0);
+  r.sudden_change = n.one_in(2) ? 0.0 : n.in(0.0, 3.0);
   r.acceleration_trust = n.one_in(4) ? base::kInfinity : n.in(0.0, 2.0);
   r.stuck = n.one_in(8);
   r.visit = n.one_in(8);

@@ -210,7 +210,7 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, request_standing, margin,
-               standing_margin, track_acceleration, trust, stuck, visit, way] = job.request;
+               standing_margin, track_acceleration, sudden_change, trust, stuck, visit, way] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -224,7 +224,9 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
       .key("standing_margin")
       .exact(standing_margin)
       .key("track_acceleration")
-      .exact(track_acceleration);
+      .exact(track_acceleration)
+      .key("sudden_change")
+      .exact(sudden_change);
   line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
   line_.key("way").open('[');
   for (const Vec3& place : way) line_.exact_vector(place);

@@ -163,6 +163,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   request.track_acceleration = exact(member(from, "track_acceleration"), "track_acceleration");
   request.acceleration_trust = exact(member(from, "acceleration_trust"), "acceleration_trust");
   // Older logs have no such key.
+  if (from.contains("sudden_change")) request.sudden_change = exact(from["sudden_change"], "sudden_change");
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
   if (from.contains("visit")) request.visit = flag_of(from, "visit");
   if (from.contains("way")) {
@@ -170,8 +171,8 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   }
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
   if (!(request.margin >= 0.0) || !(request.standing_margin >= 0.0) || !(request.track_acceleration >= 0.0) ||
-      !(request.acceleration_trust >= 0.0))
-    refuse("\"margin\", \"track_acceleration\" or \"acceleration_trust\" is below 0");
+      !(request.sudden_change >= 0.0) || !(request.acceleration_trust >= 0.0))
+    refuse("\"margin\", \"track_acceleration\", \"sudden_change\" or \"acceleration_trust\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
   if (from.contains("standing")) {
     for (const Json& id : list_of(from, "standing")) {
@@ -227,6 +228,7 @@ void change(planner::horizon::PathRequest& request, const ReplaySettings& settin
   const planner::base::HorizonSettings& now = settings.settings.horizon;
   if (now.margin != recorded.margin) request.margin = std::max(0.0, request.margin + now.margin - recorded.margin);
   if (now.track_acceleration != recorded.track_acceleration) request.track_acceleration = now.track_acceleration;
+  if (now.sudden_change != recorded.sudden_change) request.sudden_change = now.sudden_change;
   if (now.acceleration_trust != recorded.acceleration_trust) request.acceleration_trust = now.acceleration_trust;
 }
 

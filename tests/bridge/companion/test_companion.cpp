@@ -114,6 +114,7 @@ TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
   EXPECT_TRUE(request.volume.max.isApprox(Vec3(30, 10, 12) - Vec3::Constant(inset)));
   EXPECT_EQ(request.margin, planner::base::HorizonSettings{}.margin);
   EXPECT_EQ(request.track_acceleration, planner::base::HorizonSettings{}.track_acceleration);
+  EXPECT_EQ(request.sudden_change, planner::base::HorizonSettings{}.sudden_change);
 }
 
 // From what an external tracker sees; with onboard perception the relative position is right.

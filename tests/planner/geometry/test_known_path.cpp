@@ -233,7 +233,7 @@ std::vector<base::Box> growing(const Vec3& start, int steps, double step, double
 TEST(MetObstaclesOnKnownPaths, NeverMissesAny) {
   constexpr int kSteps = 60;
   constexpr double kStep = 0.1;
-  const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.8, base::kInfinity};
+  const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.0, 0.8, base::kInfinity};
   int met = 0;
   int spared = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -272,7 +272,7 @@ TEST(MetObstaclesOnKnownPaths, NeverMissesAny) {
 }
 
 TEST(MetObstaclesOnKnownPaths, SeesAStraightOneAsTheEquivalentTrack) {
-  const horizon::Clearance clearance{0.65, 2.0, 0.0, 0.8, base::kInfinity};
+  const horizon::Clearance clearance{0.65, 2.0, 0.0, 0.0, 0.8, base::kInfinity};
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     base::RandomStream random(seed);
     const base::Track track = random_track(random, 1);
@@ -300,7 +300,7 @@ TEST(MetObstaclesOnKnownPaths, RegardsItUpToItsTimeAndGrowsItAfterItsEnd) {
   path.points = {{0.0, {2, 0, 0}, kZero, kZero}, {1.0, {3, 0, 0}, kZero, kZero}};
   path.radius = 0.5;
   path.until = 3.05;
-  const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.8, base::kInfinity};
+  const horizon::Clearance clearance{0.65, 2.0, 0.4, 0.0, 0.8, base::kInfinity};
   horizon::NearbyObstacles obstacles;
   obstacles.build({}, {&path, 1}, {}, clearance, 0.1, 3.0, growing(kZero, 60, 0.1, 3.0));
   EXPECT_EQ(obstacles.obstacles(), 1U);

@@ -60,10 +60,12 @@ TEST(PathRequest, KeepsTheMarginOfTheSettings) {
   base::HorizonSettings settings;
   settings.margin = 0.7;
   settings.track_acceleration = 0.9;
+  settings.sudden_change = 1.3;
   settings.acceleration_trust = 1.1;
   const auto request = PathRequest::with(settings);
   EXPECT_EQ(request.margin, 0.7);
   EXPECT_EQ(request.track_acceleration, 0.9);
+  EXPECT_EQ(request.sudden_change, 1.3);
   EXPECT_EQ(request.acceleration_trust, 1.1);
 }
 
@@ -409,7 +411,11 @@ void add_to_cost(double distance, const base::Track& track, double t, const base
   const double weight = s.step / (0.5 + t);
   const double ahead = t + s.step + track.age;
   const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
-  const double extra = std::min(s.clearance_limit, s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead);
+  const double unsure = s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead;
+  const double evading = s.emergency_share * std::min(r.vehicle.max_acceleration, s.acceleration_limit);
+  const double until = std::min(0.45 + r.sudden_change / (2.0 * evading), s.horizon());  // s
+  const double evasion = sigma > 0.0 ? r.sudden_change * until : 0.0;
+  const double extra = std::max(evasion, std::min(s.clearance_limit, unsure));
   add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost);
 }
 
@@ -443,8 +449,8 @@ std::vector<base::Track> random_tracks(base::RandomStream& random) {
     base::Track track = sphere(random_vector(random, 25.0), random_vector(random, 4.0), random.uniform(0.2, 1.0));
     track.id = id;
     track.acceleration = random_vector(random, 2.0);
-    track.position_sigma = random.uniform(0.0, 0.1);
-    track.velocity_sigma = random.uniform(0.0, 0.1);
+    track.position_sigma = id % 3 == 0 ? 0.0 : random.uniform(0.0, 0.1);
+    track.velocity_sigma = id % 3 == 0 ? 0.0 : random.uniform(0.0, 0.1);
     track.age = random.uniform(0.0, 0.3);
     tracks.push_back(track);
   }
@@ -470,6 +476,7 @@ TEST(PathProblem, ObstacleCostsMatchTheDefinitionOverAllTracks) {
     r.margin = 0.35;
     r.standing_margin = round % 2 == 0 ? 0.15 : base::kInfinity;
     r.track_acceleration = 0.4;
+    r.sudden_change = round % 4 < 2 ? 0.0 : 0.3 * round;
     r.acceleration_trust = round % 2 == 0 ? 0.7 : base::kInfinity;
     problem.prepare(r);
     kept += problem.obstacles();
@@ -551,6 +558,7 @@ TEST(PathProblem, SolidsCostTheirTrueDistances) {
     r.standing = standing;
     r.margin = 0.35;
     r.track_acceleration = 0.4;
+    r.sudden_change = round % 3 == 0 ? 1.5 : 0.0;
     r.acceleration_trust = 0.7;
     problem.prepare(r);
     for (int i = 0; i < 5; ++i) {
@@ -575,6 +583,7 @@ PathRequest strained(base::RandomStream& random, int round) {
   if (round % 11 == 0) r.vehicle.max_speed = 15.0;
   r.margin = 0.35;
   r.track_acceleration = 0.4;
+  r.sudden_change = round % 3 == 0 ? 1.5 : 0.0;
   r.acceleration_trust = round % 2 == 0 ? 0.7 : base::kInfinity;
   return r;
 }

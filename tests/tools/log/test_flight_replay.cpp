@@ -154,6 +154,7 @@ bridge::companion::PlanJob job(std::uint64_t number, std::vector<planner::base::
   job.request.target = {20.0, 0.0, 2.0};
   job.request.margin = 0.41;
   job.request.track_acceleration = 0.3;
+  job.request.sudden_change = 1.1;
   job.request.acceleration_trust = 0.6;
   return job;
 }
@@ -389,7 +390,7 @@ std::string error_with(const BadValue& bad, std::size_t changed, const support::
   Json line = Json::parse(lines[changed]);
   line[Json::json_pointer(bad[0])] = Json::parse(bad[1]);
   lines[changed] = line.dump();
-  const std::string said = error_of(folder.log(lines[0] + "\n" + lines[1] + "\n" + good[1] + "\n"));
+  std::string said = error_of(folder.log(lines[0] + "\n" + lines[1] + "\n" + good[1] + "\n"));
   EXPECT_NE(said.find(bad[2]), std::string::npos) << bad[0] << " = " << bad[1] << ": " << said;
   return said;
 }
