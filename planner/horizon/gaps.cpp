@@ -109,6 +109,14 @@ std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame
   return chosen;
 }
 
+bool stays_taken(const PathRequest& request, const Vec3& place, const base::HorizonSettings& settings) {
+  const geometry::PathFrame frame(request.position, place);
+  for (int k = 0; k <= settings.waypoints; ++k) {
+    if (lacking(blockers(request, frame, place, k * settings.leg(), 0.0), place) <= 0.0) return false;
+  }
+  return true;
+}
+
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e) {
   return base::sample(unobstructed, e.t).position - e.from_face.dot(frame.axis) * frame.axis;
 }

@@ -25,6 +25,9 @@ struct Gap {
 std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
                            const base::HorizonSettings& settings, std::size_t most);
 
+/// Whether a vehicle at that place would touch something now and at each waypoint's time. O(obstacles · waypoints).
+bool stays_taken(const PathRequest& request, const Vec3& place, const base::HorizonSettings& settings);
+
 /// The point of unobstructed flight's line beside an obstacle that is met.
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e);
 

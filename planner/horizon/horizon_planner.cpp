@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "planner/geometry/obstacle_motion.hpp"
+#include "planner/horizon/gaps.hpp"
 #include "planner/horizon/initial_paths.hpp"
 #include "planner/horizon/path_check.hpp"
 #include "planner/optimizer/pmomvo.hpp"
@@ -108,9 +109,12 @@ verify::Plan HorizonPlanner::repeat(const PathRequest& request, const base::Time
   return make(request, previous, {seed, number}, {first, searches[1].schedule > 0 ? budget(searches[1]) : first}, pool);
 }
 
-verify::Plan HorizonPlanner::make(const PathRequest& request, const base::TimedPath& before, const Random& random,
+verify::Plan HorizonPlanner::make(const PathRequest& asked, const base::TimedPath& before, const Random& random,
                                   const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool) {
-  if (!is_valid(request)) return {};
+  if (!is_valid(asked)) return {};
+  // Nobody gets to a place that is taken: who waits before it is not stuck, and to come nearer helps nothing.
+  PathRequest request = asked;
+  request.stuck = asked.stuck && !stays_taken(asked, asked.target, settings_);
   const base::TimedPath none;
   const base::TimedPath& previous = continues(before, request, settings_.step) ? before : none;
   PathProblem& usual = problems(Extent::kUsual).usual;

@@ -76,7 +76,7 @@ class HorizonPlanner {
     explicit Problems(const base::HorizonSettings& settings) : usual(settings), emergency(settings.for_emergencies()) {}
   };
   /// With one budget for each search.
-  verify::Plan make(const PathRequest& request, const base::TimedPath& before, const Random& random,
+  verify::Plan make(const PathRequest& asked, const base::TimedPath& before, const Random& random,
                     const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool);
   Problems& problems(Extent extent) { return problems_[static_cast<std::size_t>(extent)]; }
   [[nodiscard]] std::optional<verify::Plan> without_search(const PathProblem& problem, const PathRequest& request,

@@ -175,5 +175,41 @@ TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   EXPECT_GT(reaches(), 10.0);
 }
 
+// Nobody gets there: to come nearer to who may set off helps nothing.
+TEST(HorizonPlanner, WhoWaitsForATakenTargetIsNotStuck) {
+  base::Track occupant;
+  occupant.radius = 0.5;
+  occupant.position = {11, -2.8, 1.5};
+  occupant.position_sigma = 0.1;
+  const std::vector<base::Track> tracks{occupant};
+  PathRequest r = before_the_wall(tracks);
+  r.position = {8, -2.8, 1.5};
+  r.velocity = Vec3::Zero();
+  r.target = occupant.position;
+  r.margin = base::HorizonSettings{}.margin;
+  r.sudden_change = 1.5;
+  HorizonPlanner planner{base::HorizonSettings{}};
+  base::WorkerPool pool(2);
+  const auto plan = [&] { return planner.plan(r, {}, 1, 0, {base::HorizonSettings{}.generations}, pool).path; };
+  const base::TimedPath waiting = plan();
+  r.stuck = true;
+  const base::TimedPath stuck = plan();
+  ASSERT_EQ(stuck.size(), waiting.size());
+  for (std::size_t i = 0; i < stuck.size(); ++i) EXPECT_EQ(stuck[i].position, waiting[i].position) << i;
+}
+
+TEST(StaysTaken, WhereSomethingIsThroughoutAndNotWhereItLeaves) {
+  const base::HorizonSettings settings;
+  base::Track occupant;
+  occupant.radius = 0.5;
+  occupant.position = {11, -2.8, 1.5};
+  std::vector<base::Track> tracks{occupant};
+  const PathRequest r = before_the_wall(tracks);
+  EXPECT_TRUE(stays_taken(r, occupant.position, settings));
+  EXPECT_FALSE(stays_taken(r, occupant.position + Vec3(0.51 + r.vehicle.radius, 0, 0), settings));
+  tracks.front().velocity = {0, 0.2, 0};
+  EXPECT_FALSE(stays_taken(r, occupant.position, settings));  // free after 5 s
+}
+
 }  // namespace
 }  // namespace jink::planner::horizon
