@@ -145,11 +145,11 @@ void PathProblem::change_offsets() {
 // on, until the vehicle that evades is as fast.
 Clearance PathProblem::clearance() const {
   const double evading = settings_.for_emergencies().planned_acceleration(request_.vehicle.max_acceleration);
-  const double gained = base::HorizonSettings::kReaction + 0.5 * request_.sudden_change / evading;
+  const double gains_for = base::HorizonSettings::kReaction + 0.5 * request_.sudden_change / evading;  // s
   return {request_.vehicle.radius + request_.margin,
           settings_.sigma_factor,
           request_.track_acceleration,
-          request_.sudden_change * std::min(gained, horizon()),
+          request_.sudden_change * std::min(gains_for, horizon()),
           settings_.clearance_limit,
           request_.acceleration_trust,
           request_.vehicle.radius + request_.margin_beside_standing()};

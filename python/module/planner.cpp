@@ -45,7 +45,7 @@ verify::Plan plan(Planner& planner, const Vector& position, const Vector& veloci
                   std::uint64_t seed, std::uint64_t number, std::optional<int> generations,
                   std::optional<double> deadline_ms) {
   const base::HorizonSettings& settings = planner.settings();
-  horizon::PathRequest request;
+  auto request = horizon::PathRequest::with(settings);
   request.position = vec3(position);
   request.velocity = vec3(velocity);
   request.target = vec3(target);
@@ -53,10 +53,7 @@ verify::Plan plan(Planner& planner, const Vector& position, const Vector& veloci
   request.vehicle = vehicle;
   if (tracks != nullptr) request.tracks = *tracks;
   if (standing != nullptr) request.standing = *standing;
-  request.margin = margin.value_or(settings.margin);
-  request.track_acceleration = settings.track_acceleration;
-  request.sudden_change = settings.sudden_change;
-  request.acceleration_trust = settings.acceleration_trust;
+  if (margin) request.margin = *margin;
   const base::TimedPath none;
   return planner.plan(request, previous != nullptr ? *previous : none,
                       {seed, number, budget_of(generations.value_or(settings.generations), deadline_ms)});
