@@ -418,6 +418,7 @@ TEST(FlightReplay, NamesTheLineOfABadRecord) {
       {"/from/volume/0/2", "1000.0", "accepted"},
       {"/from/volume/1/2", R"("nan")", "\"volume\" is not [min, max]"},
       {"/from/margin", "-0.1", "is below 0"},
+      {"/from/sudden_change", "-0.1", "is below 0"},
       {"/from/tracks/0", "[1,2,3]", "\"tracks\" is not a list of 14 numbers"},
       {"/from/tracks/0/0", "1.5", "an id that is not a whole number"},
       {"/from/previous", "[[0,0,0,0],[-1,0,0,0]]", "\"previous\" is not a path"},
