@@ -94,7 +94,7 @@ std::vector<Vec3> GuidedPlanner::up_to_wait(const WayInTime& way) const {
   return {};
 }
 
-verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
+verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlace& map, base::TimedPath& previous,
                                  std::uint64_t seed, std::uint64_t number, const base::Budget& budget,
                                  base::WorkerPool& pool) {
   const PathRequest given = request;
@@ -168,6 +168,7 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
   }
   best.evaluations = evaluations;
   if (taken) {
+    previous.clear();
     guide_.take(*taken);
     blocked_since_.reset();
   } else if (!stay && !went_aside(best, way_in_time(request, here))) {

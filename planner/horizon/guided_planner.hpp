@@ -31,8 +31,9 @@ class GuidedPlanner {
   /// told. Where none is, a way in space and time is looked for (SafeIntervalSearch), from here and from where the
   /// plan comes to. Where that from here arrives a second earlier, or ends where it can stay and the other does not,
   /// plans lead to where it waits first, until such a way waits no more. `request` becomes that of the plan: its tracks
-  /// are this object's, until the next call, or those given.
-  verify::Plan plan(PathRequest& request, double now, const MapPlace& map, const base::TimedPath& previous,
+  /// are this object's, until the next call, or those given; so does `previous`, which is empty after another way was
+  /// taken.
+  verify::Plan plan(PathRequest& request, double now, const MapPlace& map, base::TimedPath& previous,
                     std::uint64_t seed, std::uint64_t number, const base::Budget& budget, base::WorkerPool& pool);
 
   /// The ids of the last plan's tracks that counted among what stands.

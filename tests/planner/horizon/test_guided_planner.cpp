@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "tests/support/boxes.hpp"
@@ -36,17 +37,24 @@ struct Made {
   std::vector<base::Track> tracks;  // that the plan's request had
 };
 
-/// One plan after the other of a vehicle that stays where it is.
+/// One plan after the other of a vehicle that stays where it is. Each is what HorizonPlanner makes of the request and
+/// the plan before that the guided planner says it was made from.
 std::vector<Made> plans(const std::vector<base::Track>& tracks, int threads, int count) {
   const base::HorizonSettings settings;
   base::WorkerPool pool(threads);
   HorizonPlanner planner(settings);
   GuidedPlanner guided(planner, Guide::Knowledge::kWhole);
+  const base::Budget budget{settings.generations, base::Budget::Time::max()};
   std::vector<Made> made;
   for (int n = 0; n < count; ++n) {
+    const auto number = static_cast<std::uint64_t>(n);
     Made one{before(tracks), {}, {}};
-    one.plan = guided.plan(one.request, 0.1 * n, {}, {}, 1, static_cast<std::uint64_t>(n),
-                           {settings.generations, base::Budget::Time::max()}, pool);
+    base::TimedPath previous = made.empty() ? base::TimedPath{} : made.back().plan.path;
+    one.plan = guided.plan(one.request, 0.1 * n, {}, previous, 1, number, budget, pool);
+    const verify::Plan again = planner.plan(one.request, previous, 1, number, budget, pool);
+    const auto same = [](const base::TimedPoint& a, const base::TimedPoint& b) { return a.position == b.position; };
+    EXPECT_TRUE(std::equal(again.path.begin(), again.path.end(), one.plan.path.begin(), one.plan.path.end(), same))
+        << n;
     one.tracks.assign(one.request.tracks.begin(), one.request.tracks.end());
     made.push_back(std::move(one));
   }
