@@ -20,6 +20,7 @@ namespace {
 constexpr double kInset = 0.2;               // of the flight volume, at most, that paths keep away from its bounds
 constexpr double kInsetMargin = 0.3;         // of the margin, likewise
 constexpr double kInsetSigmas = 2.0;         // of the estimate's position, likewise
+constexpr double kClearSigmas = 1.5;         // of the estimate's position: kept on top of that where it can be
 constexpr double kSinking = 0.7;             // m/s, of a landing: PX4's MPC_LAND_SPEED by default
 constexpr double kRejoining = 1.0;           // m/s², at most, of the way back to a plan that is kept
 constexpr double kRejoiningStep = 0.1;       // s
@@ -249,6 +250,7 @@ void Planning::demand(const vehicle::VehicleState& state, double margin, planner
   request.vehicle = mission_.vehicle;
   request.margin = in_world ? planner::base::hypotenuse(margin, state.position_sigma) : margin;
   request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
+  request.volume_clearance = kClearSigmas * state.position_sigma;
   request.track_acceleration = settings_.horizon.track_acceleration;
   request.sudden_change = settings_.horizon.sudden_change;
   request.acceleration_trust = settings_.horizon.acceleration_trust;

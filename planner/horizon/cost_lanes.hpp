@@ -61,6 +61,7 @@ struct CostLanes {
       }
       travel.settle();
     }
+    const bool near_bounds = !bounds.inside(scene.inner_volume);
     // What stands is looked for once.
     constexpr std::size_t kMostStanding = 256;
     std::array<std::uint32_t, kMostStanding> standing;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
@@ -72,6 +73,7 @@ struct CostLanes {
     for (std::size_t j = 0; j < stretch.count; ++j) {
       const int step = before + static_cast<int>(j) + 1;
       const double weight = scene.step / (0.5 + step * scene.step);  // what is near in time counts more
+      if (near_bounds) clearance.add_near_bounds(scene, stretch.places[j + 1], weight);
       const PlainBox here = stretch.bounds_of(j);
       for (const NearbyObstacle& obstacle : obstacles.during(step)) {
         if (bounds.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;

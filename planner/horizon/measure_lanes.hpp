@@ -132,12 +132,15 @@ struct ClearanceLanes {
 
   /// Violation for one step that ends at `to`: the distance outside the volume times the step's duration, m s.
   [[gnu::always_inline]] void add_outside(const PathScene& scene, const PointLanes<kLanes>& to) {
-    const base::Box& volume = scene.volume;
+    for (std::size_t i = 0; i < kLanes; ++i)
+      violation[i] += std::sqrt(squared_outside(scene.volume, to, i)) * scene.step;
+  }
+
+  /// Dip into the clearance of the volume's bounds for one step that ends at `to`.
+  [[gnu::always_inline]] void add_near_bounds(const PathScene& scene, const PointLanes<kLanes>& to, double weight) {
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const double x = PlainBox::outside(volume.min.x(), volume.max.x(), to.x[i]);
-      const double y = PlainBox::outside(volume.min.y(), volume.max.y(), to.y[i]);
-      const double z = PlainBox::outside(volume.min.z(), volume.max.z(), to.z[i]);
-      violation[i] += std::sqrt(x * x + y * y + z * z) * scene.step;
+      const double depth = squared_outside(scene.inner_volume, to, i) * (scene.per_clearance * scene.per_clearance);
+      dip[i] += weight * (depth < 1.0 ? depth : 1.0);
     }
   }
 
@@ -188,6 +191,15 @@ struct ClearanceLanes {
   }
 
  private:
+  /// Of lane i, m².
+  [[gnu::always_inline]] static double squared_outside(const base::Box& box, const PointLanes<kLanes>& at,
+                                                       std::size_t i) {
+    const double x = PlainBox::outside(box.min.x(), box.max.x(), at.x[i]);
+    const double y = PlainBox::outside(box.min.y(), box.max.y(), at.y[i]);
+    const double z = PlainBox::outside(box.min.z(), box.max.z(), at.z[i]);
+    return x * x + y * y + z * z;
+  }
+
   /// What a distance from an obstacle's centre counts.
   struct Weights {
     double hard, soft, extra, dip_weight, weight;

@@ -15,10 +15,12 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLongestTail = 600.0;   // s, of straight flight after the horizon
-constexpr double kLongestLanding = 2.0;  // s, in which what has settled within the horizon comes to rest
-constexpr double kEven = 0.05;           // m/s, of unobstructed flight, from which on offsets change as it gets on
-constexpr int kLatestLanding = 3;        // steps after it has come near
+constexpr double kLongestTail = 600.0;    // s, of straight flight after the horizon
+constexpr double kLongestLanding = 2.0;   // s, in which what has settled within the horizon comes to rest
+constexpr double kEven = 0.05;            // m/s, of unobstructed flight, from which on offsets change as it gets on
+constexpr int kLatestLanding = 3;         // steps after it has come near
+constexpr double kClearShare = 0.25;      // of the volume, at most, that volume_clearance takes on each side
+constexpr double kLeastClearance = 1e-6;  // m, of volume_clearance that counts
 
 std::size_t index(int i) {
   return static_cast<std::size_t>(i);
@@ -32,6 +34,14 @@ const base::HorizonSettings& checked(const base::HorizonSettings& settings) {
 
 base::Box ball(const Vec3& center, double radius) {
   return {(center.array() - radius).matrix(), (center.array() + radius).matrix()};
+}
+
+/// Where the clearance of the volume's bounds is kept: all places where none is asked for. The target is one of them.
+base::Box inner_volume(const PathRequest& request) {
+  if (request.volume_clearance < kLeastClearance) return {};
+  const auto [low, high] = std::pair(request.volume.min, request.volume.max);
+  const Vec3 inset = (kClearShare * (high - low)).cwiseMin(request.volume_clearance);
+  return {(low + inset).cwiseMin(request.target), (high - inset).cwiseMax(request.target)};
 }
 
 }  // namespace
@@ -80,6 +90,8 @@ void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>&
   scene_.via = via;
   scene_.time_weight = (via ? settings_.hurry : 1.0) * settings_.time_weight;
   scene_.volume = request.volume;
+  scene_.inner_volume = inner_volume(request);
+  scene_.per_clearance = 1.0 / std::max(kLeastClearance, request.volume_clearance);
   scene_.frame = geometry::PathFrame(request.position, request.target);
   scene_.follower = {settings_.step, 1.0 / request.vehicle.max_speed, 1.0 / request.vehicle.max_climb,
                      1.0 / (acceleration * settings_.step)};

@@ -24,6 +24,7 @@ struct PathRequest {
   Vec3 velocity = Vec3::Zero();                  ///< of the vehicle, ENU, m/s
   Vec3 target = Vec3::Zero();                    ///< where the path ends, ENU, m
   base::Box volume;                              ///< that the path must not leave
+  double volume_clearance = 0.0;                 ///< kept from the volume's bounds where it can be, m
   base::VehicleLimits vehicle;                   ///< size, speeds, acceleration
   std::span<const base::Track> tracks;           ///< obstacles whose motion is extrapolated
   std::span<const geometry::KnownPath> paths{};  ///< of vehicles that say where they will be
@@ -54,8 +55,9 @@ struct PathRequest {
 /// unobstructed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths
 /// the one at cruise speed wins; with PathRequest::visit length and time count until the target has been visited.
 /// f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and how soon the path dips
-/// into the clearance that the tracks' uncertainty asks for. Violation: the same for the hard margin, and for leaving
-/// the volume.
+/// into the clearance that the tracks' uncertainty asks for, and into PathRequest::volume_clearance of the volume's
+/// bounds (a quarter of the volume at most, and not beside the target). Violation: the same for the hard margin, and
+/// for leaving the volume.
 class PathProblem final : public optimizer::Problem {
  public:
   /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.

@@ -62,6 +62,8 @@ struct PathScene {
   Vec3 target = Vec3::Zero();      ///< where the path ends
   std::optional<Vec3> via;         ///< over which the way on leads from where the horizon ends short of it
   base::Box volume;                ///< that the path must not leave
+  base::Box inner_volume;          ///< whose outside counts as a dip
+  double per_clearance = 0.0;      ///< 1 / PathRequest::volume_clearance, 1/m
   geometry::PathFrame frame;       ///< from the vehicle to the target
   Follower follower;               ///< how the vehicle follows
   std::vector<Reach> reach;        ///< of each waypoint

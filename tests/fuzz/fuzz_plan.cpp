@@ -151,11 +151,12 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
   base::TimedPoint& point = path.points[n.below(path.points.size())];
   const auto axis = static_cast<Eigen::Index>(n.below(3));
-  const std::array<double*, 29> fields{&r.position[axis],
+  const std::array<double*, 30> fields{&r.position[axis],
                                        &r.velocity[axis],
                                        &r.target[axis],
                                        &r.volume.min[axis],
                                        &r.volume.max[axis],
+                                       &r.volume_clearance,
                                        &r.vehicle.radius,
                                        &r.vehicle.max_speed,
                                        &r.vehicle.cruise_speed,
@@ -211,6 +212,7 @@ Case any_case(Numbers& n, Numbers& of_bodies) {
     if (n.one_in(8)) r.volume.max += n.vec(2.0 * room).cwiseMax(-2.0 * room);  // which may leave its start out
     r.volume.max = r.volume.max.cwiseMax(r.volume.min);
   }
+  r.volume_clearance = n.one_in(2) ? 0.0 : n.in(0.0, 1.0);
   r.margin = n.in(0.0, 0.5);
   r.track_acceleration = n.in(0.0, 1.0);
   r.sudden_change = n.one_in(2) ? 0.0 : n.in(0.0, 3.0);

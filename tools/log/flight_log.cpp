@@ -209,8 +209,9 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
-  const auto& [position, velocity, target, volume, vehicle, request_tracks, request_paths, request_standing, margin,
-               standing_margin, track_acceleration, sudden_change, trust, stuck, visit, way] = job.request;
+  const auto& [position, velocity, target, volume, volume_clearance, vehicle, request_tracks, request_paths,
+               request_standing, margin, standing_margin, track_acceleration, sudden_change, trust, stuck, visit, way] =
+      job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -219,7 +220,9 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   for (const double limit : {radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb})
     line_.exact(limit);
   line_.close(']').key("volume").open('[').exact_vector(volume.min).exact_vector(volume.max).close(']');
-  line_.key("margin")
+  line_.key("volume_clearance")
+      .exact(volume_clearance)
+      .key("margin")
       .exact(margin)
       .key("standing_margin")
       .exact(standing_margin)

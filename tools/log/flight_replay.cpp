@@ -164,12 +164,14 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   request.acceleration_trust = exact(member(from, "acceleration_trust"), "acceleration_trust");
   // Older logs have no such key.
   if (from.contains("sudden_change")) request.sudden_change = exact(from["sudden_change"], "sudden_change");
+  if (from.contains("volume_clearance")) request.volume_clearance = exact(from["volume_clearance"], "volume_clearance");
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
   if (from.contains("visit")) request.visit = flag_of(from, "visit");
   if (from.contains("way")) {
     for (const Json& place : list_of(from, "way")) request.way.push_back(exact_vector(place, "way"));
   }
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
+  if (!(request.volume_clearance >= 0.0)) refuse("\"volume_clearance\" is below 0");
   if (!(request.margin >= 0.0) || !(request.standing_margin >= 0.0) || !(request.track_acceleration >= 0.0) ||
       !(request.sudden_change >= 0.0) || !(request.acceleration_trust >= 0.0))
     refuse("\"margin\", \"track_acceleration\", \"sudden_change\" or \"acceleration_trust\" is below 0");

@@ -112,6 +112,7 @@ TEST(Companion, AsksForPlansWithinGeofenceAndMinHeight) {
   const double inset = 0.3 * planner::base::HorizonSettings{}.margin;
   EXPECT_TRUE(request.volume.min.isApprox(Vec3(-5, -10, 1) + Vec3::Constant(inset)));
   EXPECT_TRUE(request.volume.max.isApprox(Vec3(30, 10, 12) - Vec3::Constant(inset)));
+  EXPECT_EQ(request.volume_clearance, 0.0);
   EXPECT_EQ(request.margin, planner::base::HorizonSettings{}.margin);
   EXPECT_EQ(request.track_acceleration, planner::base::HorizonSettings{}.track_acceleration);
   EXPECT_EQ(request.sudden_change, planner::base::HorizonSettings{}.sudden_change);
@@ -127,6 +128,7 @@ TEST(Companion, KeepsWhatItsOwnEstimateIsOffByFromTracksOfTheWorld) {
     loop.link.telemetry.position_sigma = 0.4;
     loop.airborne().fly();
     EXPECT_DOUBLE_EQ(loop.planner.jobs.back().request.margin, world ? std::hypot(least, 0.4) : least);
+    EXPECT_DOUBLE_EQ(loop.planner.jobs.back().request.volume_clearance, 1.5 * 0.4);  // its height is as wrong
   }
 }
 

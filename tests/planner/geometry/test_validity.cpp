@@ -43,6 +43,7 @@ struct Everything {
     request.volume = {{-5, -10, 0.3}, {25, 10, 8}};
     request.margin = 0.35;
     request.track_acceleration = 0.4;
+    request.volume_clearance = 0.4;
     request.sudden_change = 1.5;
     request.acceleration_trust = 0.7;
   }
@@ -103,6 +104,7 @@ std::vector<Field> fields() {
       JINK_FIELD(kPlanners | kPaper, request.vehicle.damping, kNoAmount),
       JINK_FIELD(kPlanners, request.margin, kNoAmount),
       JINK_FIELD(kPlanners, request.track_acceleration, kNoAmount),
+      JINK_FIELD(kPlanners, request.volume_clearance, kNoAmount),
       JINK_FIELD(kPlanners, request.sudden_change, kNoAmount),
       JINK_FIELD(kPlanners | kVerifier, request.acceleration_trust, no_trust),
       JINK_FIELD(kAll, tracks[0].position[0], kNoPlace),

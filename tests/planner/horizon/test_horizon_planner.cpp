@@ -141,6 +141,21 @@ TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
 
 // Behind something slow whose place is known to 0.3 m: with a band of a share of the length alone, which is narrow near
 // the target, the mean was 0.51 m.
+// Along the upper bound of a low volume: straight on it stays there nearly to the end.
+TEST(HorizonPlanner, LeavesTheVolumesBoundsWhereARequestAsksForClearance) {
+  PathRequest r = request({});
+  r.position = {0, 0, 2.4};
+  r.target = {20, 0, 1.5};
+  r.volume = {{-5, -10, 0.6}, {25, 10, 2.4}};
+  EXPECT_GT(base::sample(plan_once(r).path, 2.0).position.z(), 2.1);
+  r.volume_clearance = 0.4;
+  const verify::Plan plan = plan_once(r);
+  EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
+  EXPECT_LT(base::sample(plan.path, 2.0).position.z(), 2.04);  // 0.36 m off
+  r.target.z() = 2.4;                                          // where it is sent to it may be
+  EXPECT_NEAR(base::sample(plan_once(r).path, 2.0).position.z(), 2.4, 1e-9);
+}
+
 TEST(HorizonPlanner, GivesRoomToWhatItFollowsNearTheTarget) {
   struct Following {
     Vec3 ahead;

@@ -419,7 +419,7 @@ void add_to_cost(double distance, const base::Track& track, double t, const base
   add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost);
 }
 
-/// f3 and violation by their definition, from every track, nothing left out.
+/// f3 and violation by their definition, from every track, nothing left out, but for leaving the volume.
 optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSettings& s, const PathRequest& r,
                                const base::TimedPath& path) {
   optimizer::Cost cost;
@@ -438,6 +438,12 @@ optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSe
           std::sqrt(geometry::swept_distance_squared(from, to, track.position, track.position)) - track.radius;
       add_to_cost(distance, r.vehicle.radius + r.margin_beside_standing(),
                   std::min(s.clearance_limit, s.sigma_factor * track.position_sigma), s.step / (0.5 + t), cost);
+    }
+    if (r.volume_clearance > 0.0) {
+      const Vec3 inset = (0.25 * (r.volume.max - r.volume.min)).cwiseMin(r.volume_clearance);
+      const Vec3 low = (r.volume.min + inset).cwiseMin(r.target), high = (r.volume.max - inset).cwiseMax(r.target);
+      const double depth = (to - to.cwiseMax(low).cwiseMin(high)).norm() / r.volume_clearance;
+      cost.f[2] += s.step / (0.5 + t) * std::min(1.0, depth * depth);
     }
   }
   return cost;
@@ -579,6 +585,7 @@ PathRequest strained(base::RandomStream& random, int round) {
   PathRequest r = request(round % 5 == 0 ? Vec3(3, 1, 2) : Vec3(40, 0, 2));
   r.velocity = random_vector(random, round % 3 == 0 ? 12.0 : 3.0);
   if (round % 4 == 0) r.volume = {{-2, -1, 1}, {45, 1, 3}};
+  r.volume_clearance = round % 8 == 0 ? 0.45 : round % 3 == 0 ? 0.8 : 0.0;  // without a volume too
   if (round % 7 == 0) r.vehicle.max_acceleration = 1.0;
   if (round % 11 == 0) r.vehicle.max_speed = 15.0;
   r.margin = 0.35;
