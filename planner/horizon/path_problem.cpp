@@ -39,7 +39,7 @@ base::Box ball(const Vec3& center, double radius) {
 /// Where the clearance of the volume's bounds is kept: all places where none is asked for. The target is one of them.
 base::Box inner_volume(const PathRequest& request) {
   if (request.volume_clearance < kLeastClearance) return {};
-  const auto [low, high] = std::pair(request.volume.min, request.volume.max);
+  const auto& [low, high] = request.volume;
   const Vec3 inset = (kClearShare * (high - low)).cwiseMin(request.volume_clearance);
   return {(low + inset).cwiseMin(request.target), (high - inset).cwiseMax(request.target)};
 }

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "planner/geometry/validity.hpp"
 #include "tools/log/map_record.hpp"
@@ -171,10 +173,13 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
     for (const Json& place : list_of(from, "way")) request.way.push_back(exact_vector(place, "way"));
   }
   if (!(request.volume.min.array() <= request.volume.max.array()).all()) refuse("\"volume\" is not [min, max]");
-  if (!(request.volume_clearance >= 0.0)) refuse("\"volume_clearance\" is below 0");
-  if (!(request.margin >= 0.0) || !(request.standing_margin >= 0.0) || !(request.track_acceleration >= 0.0) ||
-      !(request.sudden_change >= 0.0) || !(request.acceleration_trust >= 0.0))
-    refuse("\"margin\", \"track_acceleration\", \"sudden_change\" or \"acceleration_trust\" is below 0");
+  for (const auto& [key, amount] : {std::pair("volume_clearance", request.volume_clearance),
+                                    {"margin", request.margin},
+                                    {"standing_margin", request.standing_margin},
+                                    {"track_acceleration", request.track_acceleration},
+                                    {"sudden_change", request.sudden_change},
+                                    {"acceleration_trust", request.acceleration_trust}})
+    if (!(amount >= 0.0)) refuse("\"" + std::string(key) + "\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));
   if (from.contains("standing")) {
     for (const Json& id : list_of(from, "standing")) {

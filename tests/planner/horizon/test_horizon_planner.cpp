@@ -139,8 +139,6 @@ TEST(HorizonPlanner, FliesStraightWhereNothingIsInTheWay) {
   EXPECT_FALSE(plan.emergency);
 }
 
-// Behind something slow whose place is known to 0.3 m: with a band of a share of the length alone, which is narrow near
-// the target, the mean was 0.51 m.
 // Along the upper bound of a low volume: straight on it stays there nearly to the end.
 TEST(HorizonPlanner, LeavesTheVolumesBoundsWhereARequestAsksForClearance) {
   PathRequest r = request({});
@@ -156,6 +154,8 @@ TEST(HorizonPlanner, LeavesTheVolumesBoundsWhereARequestAsksForClearance) {
   EXPECT_NEAR(base::sample(plan_once(r).path, 2.0).position.z(), 2.4, 1e-9);
 }
 
+// Behind something slow whose place is known to 0.3 m: with a band of a share of the length alone, which is narrow near
+// the target, the mean was 0.51 m.
 TEST(HorizonPlanner, GivesRoomToWhatItFollowsNearTheTarget) {
   struct Following {
     Vec3 ahead;
