@@ -82,6 +82,7 @@ class Peer:
         self.mode, self.armed, self.landed, self.frozen = HOLD, False, 1, False
         self.running, self.unread = True, b""
         self.shift, self.resets = [0.0, 0.0, 0.0], 254  # so that the counter wraps soon
+        self.velocity = (0.0, 0.0, 0.0) if options.still else VELOCITY_NED
         self.status, self.charge, self.remaining = None, 1, 100
         self.intended = None  # the mode that flies
         self.requests = {}  # of messages and parameters, by id or name: how often
@@ -104,10 +105,10 @@ class Peer:
                                         mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | ARMED, LAND, 5)
                 link.mav.local_position_ned_send(ms, 100, 100, -100, 0, 0, 0)
         elif name == "LOCAL_POSITION_NED":
-            m.local_position_ned_send(ms, *self.position(), *VELOCITY_NED)
+            m.local_position_ned_send(ms, *self.position(), *self.velocity)
         elif name == "ODOMETRY":
             m.odometry_send(ms * 1000, mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_LOCAL_NED, *self.position(),
-                            [1, 0, 0, 0], *VELOCITY_NED, 0, 0, 0, [math.nan] * 21, [math.nan] * 21, self.resets % 256, 2,
+                            [1, 0, 0, 0], *self.velocity, 0, 0, 0, [math.nan] * 21, [math.nan] * 21, self.resets % 256, 2,
                             100)
         elif name == "BATTERY_STATUS":
             m.battery_status_send(0, 0, 0, 300, [4000] * 4 + [65535] * 6, 100, 100, 10, self.remaining, 0, self.charge)
@@ -299,6 +300,7 @@ def main():
     parser.add_argument("--mute", type=int, nargs="*", default=[], help="commands (MAV_CMD) not to answer")
     parser.add_argument("--single-ack", action="store_true", help="one answer to DO_SET_MODE, as other versions give")
     parser.add_argument("--no-odometry", action="store_true")
+    parser.add_argument("--still", action="store_true", help="tells of no velocity, as its position does not change")
     parser.add_argument("--keyed", action="store_true", help="MAVLink signing, as PX4 1.18 with a key: signs, and takes "
                                                              "signed messages alone")
     parser.add_argument("--loss", type=float, default=0.0, help="share of the messages that are lost, each way")
