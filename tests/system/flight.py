@@ -5,6 +5,7 @@ import contextlib
 import io
 import json
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -47,7 +48,8 @@ def check(holds, text):
 
 
 class Arena:
-    """A scratch folder, a MAVLink instance and a DDS domain; ends its processes when it is left."""
+    """A scratch folder, a MAVLink instance and a DDS domain; ends its processes when it is left, and removes the folder
+    unless something failed."""
 
     def __init__(self, jink, instance):
         self.jink = jink
@@ -67,6 +69,8 @@ class Arena:
         if kind is not None:
             for text in sorted(self.folder.glob("*.txt")):
                 say(f"--- {text.name}\n{text.read_text(errors='replace')[-6000:]}")
+        else:
+            shutil.rmtree(self.folder)
 
     def start(self, name, command, **options):
         """Starts a process whose output goes to NAME.txt."""

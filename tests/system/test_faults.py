@@ -39,7 +39,7 @@ SCENARIO = {
 # 3.3 s after it set out.
 UNSTEERED = {"obstacles": [{**SCENARIO["obstacles"][0], "position": [9.2, -4, 1.5]},
                            {**SCENARIO["obstacles"][1], "position": [6, 2.4, 1.5]}, SCENARIO["obstacles"][2]]}
-# Nothing is where a vehicle gets that does not know where it is.
+# Nothing is where a vehicle gets that does not know where it is, or is to stop straight on.
 ASIDE = {"obstacles": [{"radius": 0.4, "position": [5, -6, 1.5]}]}
 
 
@@ -206,7 +206,7 @@ CASES = [
     Case("reordering", [at(0, "reorder", rate=0.3)]),
     Case("tracks_stop_0.5s", [at(1.5, "tracks_stop", **{"for": 0.5})]),
     Case("tracks_stop_2s", [at(1.5, "tracks_stop", **{"for": 2.0})], hazards=("tracks are stale",), after=braked_soon,
-         scenario=UNSTEERED),
+         scenario=ASIDE),
     Case("tracks_stop_for_good", [at(1.0, "tracks_stop")], 1, "tracks are stale", (), ("tracks are stale",), end="hold"),
     Case("tracks_frozen", [at(1.0, "tracks_freeze")], 1, "tracks are stale", ("tracks_frozen",), ("tracks are stale",),
          end="hold"),
