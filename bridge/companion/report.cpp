@@ -128,8 +128,7 @@ void FlightReporter::retreats(double now, const std::optional<Vec3>& refuge, dou
 }
 
 void FlightReporter::stuck(double now, bool stuck) {
-  if (changed(said_.stuck, stuck))
-    event(now, "stuck", stuck ? "no nearer to the target for 4 s" : "over");
+  if (changed(said_.stuck, stuck)) event(now, "stuck", stuck ? "no nearer to the target for 4 s" : "over");
 }
 
 void FlightReporter::unseen(double now, bool stays) {
