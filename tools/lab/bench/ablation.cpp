@@ -93,9 +93,10 @@ Case case_at(const sim::world::World& world, double share, const planner::base::
   return c;
 }
 
-std::vector<Case> make_cases(int worlds, const planner::base::HorizonSettings& settings) {
+std::vector<Case> make_cases(const Options& options, const planner::base::HorizonSettings& settings) {
+  const int worlds = options.quick ? 1 : kWorlds;
   std::vector<Case> cases;
-  for (const std::string_view family : sim::families::world_families()) {
+  for (const std::string_view family : measured_families(options)) {
     if (sim::families::has_map(family)) continue;  // the search is asked about tracks
     for (int seed = 1; seed <= worlds; ++seed) {
       const sim::world::World world(sim::families::make_world(family, static_cast<std::uint64_t>(seed)));
@@ -240,12 +241,12 @@ std::vector<std::string> cells_of(const Variant& variant, const Results& own, co
 
 void print_horizon(const Options& options, planner::base::WorkerPool& pool) {
   const planner::base::HorizonSettings settings;
-  const std::vector<Case> cases = make_cases(options.quick ? 1 : kWorlds, settings);
+  const std::vector<Case> cases = make_cases(options, settings);
   const std::vector<Variant> variants = horizon_variants(settings);
   const planner::base::OptimizerSettings& base = variants.front().optimizer;
   print_title("ablation: horizon mode",
               fmt::format("the optimizer alone, without a plan before, on {} plans from points of unobstructed flight "
-                          "in all families of worlds; default: adaptive operators, focus {}, seeding, m {}, l {}, "
+                          "in the families of worlds; default: adaptive operators, focus {}, seeding, m {}, l {}, "
                           "n_pop {}, {} generations.\nsolved: a solution of the front violates nothing. "
                           "Gaps to the best that any row found, over the plans that all rows solved: of the shortest "
                           "such solution's f1, and of the least f1 / straight + {} f2 + {} f3, times 100. better, "

@@ -8,7 +8,16 @@
 #include <cstdio>
 #include <numeric>
 
+#include "sim/families/families.hpp"
+
 namespace jink::tools::lab::bench {
+
+std::vector<std::string_view> measured_families(const Options& options) {
+  std::vector<std::string_view> families;
+  const auto all = sim::families::world_families();
+  for (std::size_t i = 0; i < all.size(); i += options.quick ? 4 : 1) families.push_back(all[i]);
+  return families;
+}
 
 double quantile(std::vector<double> samples, double q) {
   std::sort(samples.begin(), samples.end());

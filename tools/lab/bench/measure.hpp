@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/lab/statistics/samples.hpp"
@@ -24,6 +25,9 @@ struct Options {
   int scaling_rounds = 50;
   std::vector<std::string> recordings;  ///< files of recorded movers
 };
+
+/// The families of worlds that are measured: all, with `--quick` every fourth.
+std::vector<std::string_view> measured_families(const Options& options);
 
 /// Wall time of one call, ms.
 template <typename Work>

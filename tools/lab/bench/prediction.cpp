@@ -49,7 +49,7 @@ void bench_prediction(const Options& options) {
     all.add(sum);
     table.row(cells(name, sum));
   };
-  for (const std::string_view family : sim::families::world_families())
+  for (const std::string_view family : measured_families(options))
     add(std::string(family), [family](std::uint64_t seed) { return sim::families::make_world(family, seed); });
   for (const std::string& file : options.recordings) {
     const sim::recorded::Recording recording = sim::recorded::load_recording(file);

@@ -124,7 +124,7 @@ void bench_warm(const Options& options) {
                fmt::format("{}", gaps.as_clear.size()), percent(mean(gaps.as_clear)),
                percent(quantile(gaps.as_clear, 0.9))});
   };
-  for (const std::string_view family : sim::families::world_families()) {
+  for (const std::string_view family : measured_families(options)) {
     if (!sim::families::blocks_straight_line(family) || sim::families::has_map(family) ||
         sim::families::make_world(family, 1).obstacles.empty())
       continue;

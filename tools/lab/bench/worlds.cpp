@@ -77,7 +77,7 @@ void bench_worlds(const Options& options) {
                   options.seeds, flights));
   Table table({"family", "planned", "SLR", "time", "clearance", "flown", "collided", "SLR", "time", "clearance"});
   planner::base::WorkerPool pool(options.cores);
-  for (const std::string_view family : sim::families::world_families()) {
+  for (const std::string_view family : measured_families(options)) {
     // Those of the literature, the known places and the teams belong to the arena.
     if (!sim::families::blocks_straight_line(family) || sim::families::has_map(family) ||
         sim::families::make_world(family, 1).obstacles.empty())
