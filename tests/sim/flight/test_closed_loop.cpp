@@ -349,7 +349,7 @@ TEST(ClosedLoop, KeepsTheRoomToEvadeWhoSetsOffBesideTheWay) {
   scenario.sensing.position_noise = 0.1;
   scenario.sensing.velocity_noise = 0.3;
   int flights = 0, near = 0;
-  for (const double late : support::repetitions({-0.2, 0.0, 0.2, 0.4})) {
+  for (const double late : support::repetitions({0.4, 0.2, 0.0, -0.2})) {
     scenario.obstacles.clear();
     for (int i = 0; i < 6; ++i) {
       const double x = 8.0 + 5.0 * i;
@@ -366,7 +366,7 @@ TEST(ClosedLoop, KeepsTheRoomToEvadeWhoSetsOffBesideTheWay) {
       near += flown.result.min_clearance < 0.2 ? 1 : 0;
     }
   }
-  EXPECT_LE(near, (flights + 4) / 5);
+  EXPECT_LE(near, flights / 5);
 }
 
 /// A bit of everything that leaves the flight possible, in the default scenario.
