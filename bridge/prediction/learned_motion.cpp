@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/base/portable_math.hpp"
+#include "planner/base/settings.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::prediction {
@@ -14,7 +15,6 @@ namespace {
 constexpr double kMoves = 0.3;       // m/s, from which on a track may stop
 constexpr double kSureSigmas = 2.0;  // of its velocity
 constexpr double kStopping = 4.0;    // m/s², at which it does: a walking person's
-constexpr double kSeenLater = 0.8;   // s, in which a vehicle reacts and brakes
 constexpr int kStopPoints = 4;       // of the path to the stop
 
 /// One axis of bouncing: folded back into the room as often as needed.
@@ -141,8 +141,10 @@ void add_stops(std::span<const planner::base::Track> tracks, const Vec3& place, 
     const double speed = track.velocity.norm();
     if (speed < kMoves + kSureSigmas * track.velocity_sigma) continue;
     if ((track.position - place).norm() - track.radius > reach) continue;
-    planner::geometry::KnownPath& path = paths.emplace_back(path_of(track, kSeenLater));
+    // By the end a vehicle as fast has reacted and can have stopped too: one that follows may be no nearer than that.
     const double time = speed / kStopping;
+    planner::geometry::KnownPath& path =
+        paths.emplace_back(path_of(track, planner::base::HorizonSettings::kReaction + time));
     for (int n = 0; n <= kStopPoints; ++n) {
       const double t = time * n / kStopPoints;
       path.points.push_back(

@@ -70,7 +70,7 @@ struct Obstacles {
                                      double trust);
 
 /// Appends, for each of the tracks that moves and is within `reach`, m, of a place, the path on which it stops at once,
-/// as people and what people drive may: counted for as long as a vehicle takes to see that and to brake.
+/// as people and what people drive may: counted for as long as a vehicle as fast takes to see that and to stop.
 void add_stops(std::span<const planner::base::Track> tracks, const Vec3& place, double reach,
                std::vector<planner::geometry::KnownPath>& paths);
 

@@ -19,7 +19,8 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLonger = 4.0;  // m, that a solution may be longer than the shortest besides the band
+constexpr double kLonger = 4.0;        // m, that a solution may be longer than the shortest besides the band
+constexpr double kWaitingShare = 2.0;  // times sudden_change, for who waits before a taken target
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
@@ -112,9 +113,17 @@ verify::Plan HorizonPlanner::repeat(const PathRequest& request, const base::Time
 verify::Plan HorizonPlanner::make(const PathRequest& asked, const base::TimedPath& before, const Random& random,
                                   const std::array<base::Budget, 2>& budgets, base::WorkerPool& pool) {
   if (!is_valid(asked)) return {};
-  // Nobody gets to a place that is taken: who waits before it is not stuck, and to come nearer helps nothing.
   PathRequest request = asked;
-  request.stuck = asked.stuck && !stays_taken(asked, asked.target, settings_);
+  weights_ = {settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
+  if (asked.stuck && stays_taken(asked, asked.target, settings_)) {
+    // Nobody gets there, and to come nearer helps nothing: room is all that is worth something, since who is there may
+    // set off.
+    request.stuck = false;
+    request.sudden_change = kWaitingShare * asked.sudden_change;
+    weights_ = {0.0, 0.0, 1.0};
+  } else if (asked.stuck) {
+    weights_ = {1.0, 0.0, 0.0};  // what gets on, not what turns least: that waits
+  }
   const base::TimedPath none;
   const base::TimedPath& previous = continues(before, request, settings_.step) ? before : none;
   PathProblem& usual = problems(Extent::kUsual).usual;
@@ -209,10 +218,7 @@ std::vector<optimizer::Cost> HorizonPlanner::quantized(std::span<const optimizer
 
 verify::Plan HorizonPlanner::choose(const PathProblem& problem, const PathRequest& request,
                                     const optimizer::Front& front) const {
-  // Of a vehicle that is stuck the plan that gets on is chosen, not the one that turns least: that one waits.
-  std::array<double, 3> weights{settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
-  if (request.stuck) weights = {1.0, 0.0, 0.0};
-  const std::vector<int> order = optimizer::topsis_order(quantized(front.costs), problem.objectives(), weights);
+  const std::vector<int> order = optimizer::topsis_order(quantized(front.costs), problem.objectives(), weights_);
   verify::Plan best;
   // True where there is nothing left to look for.
   const auto consider = [&](std::span<const double> x, bool feasible) {

@@ -97,6 +97,7 @@ class HorizonPlanner {
   std::unique_ptr<optimizer::Optimizer> optimizer_;
   const optimizer::Front* front_ = nullptr;  // of the last search; the optimizer's
   std::vector<double> initial_;
+  std::array<double, 3> weights_{};  // of the objectives, in the choice for the present request
 };
 
 }  // namespace jink::planner::horizon

@@ -451,6 +451,10 @@ TEST(ObstaclesOf, WhatMovesNearbyMayStop) {
   EXPECT_NEAR(paths[0].points.back().position.x(), 3.5, 1e-12) << "v² / 2a";
   EXPECT_NEAR(paths[0].points.back().t, 0.5, 1e-12);
   EXPECT_LT(paths[0].until, 1.0) << "it is seen by then";
+  tracks[0].velocity = {4, 0, 0};
+  paths.clear();
+  add_stops(tracks, {0, 0, 1}, 10.0, paths);
+  EXPECT_GE(paths.at(0).until, 0.45 + 1.0) << "who follows as fast has reacted and stopped no sooner";
 }
 
 TEST(ObstaclesOf, PlainPredictionStandsBesideAForecastForAsLongAsItCounts) {
