@@ -19,8 +19,9 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLonger = 4.0;        // m, that a solution may be longer than the shortest besides the band
-constexpr double kWaitingShare = 2.0;  // times sudden_change, for who waits before a taken target
+constexpr double kLonger = 4.0;         // m, that a solution may be longer than the shortest besides the band
+constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
+constexpr double kWaitingHaste = 1e-6;  // times the weights of length and turns, for the same: they choose among equals
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
   o.slaves = s.slaves;
@@ -116,11 +117,11 @@ verify::Plan HorizonPlanner::make(const PathRequest& asked, const base::TimedPat
   PathRequest request = asked;
   weights_ = {settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
   if (asked.stuck && stays_taken(asked, asked.target, settings_)) {
-    // Nobody gets there, and to come nearer helps nothing: room is all that is worth something, since who is there may
-    // set off.
+    // Nobody gets there, and to come nearer helps nothing: room comes before all else, since who is there may set off.
     request.stuck = false;
-    request.sudden_change = kWaitingShare * asked.sudden_change;
-    weights_ = {0.0, 0.0, 1.0};
+    request.sudden_change = kWaitingRoom * asked.sudden_change;
+    weights_[0] *= kWaitingHaste;
+    weights_[1] *= kWaitingHaste;
   } else if (asked.stuck) {
     weights_ = {1.0, 0.0, 0.0};  // what gets on, not what turns least: that waits
   }
