@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The commands as contracts has them: exit codes, one-line errors, JSON keys, the same bits at any thread count.
 
-    test_command_line.py JINK
+    test_command_line.py JINK INSTANCE
 """
 
 import json
@@ -85,8 +85,9 @@ BAD_USAGE = [
 
 
 class Jink:
-    def __init__(self, program):
+    def __init__(self, program, instance):
         self.program = program
+        self.instance = instance  # the MAVLink instance that is this test's own
 
     def run(self, *arguments, seconds=120):
         return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, timeout=seconds)
@@ -137,12 +138,10 @@ def bad_peers(jink, folder):
         done = jink.run(*command)
         check(one_line(done, mission, "'connection'", "/dev/jink-none"), f"status {done.returncode}: {done.stderr.strip()}")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        try:
-            other.bind(("0.0.0.0", 14589))
-        except OSError:
-            pass  # another simulator has it, which is as good
-        done = jink.run("sim", CROSSING, "--instance", 9, "--no-tracks", "--duration", 1, "--log", log)
-        check(one_line(done, "--instance 9", "14589", "taken"), f"status {done.returncode}: {done.stderr.strip()}")
+        port = 14580 + jink.instance
+        other.bind(("0.0.0.0", port))
+        done = jink.run("sim", CROSSING, "--instance", jink.instance, "--no-tracks", "--duration", 1, "--log", log)
+        check(one_line(done, f"--instance {jink.instance}", port, "taken"), f"status {done.returncode}: {done.stderr.strip()}")
     check(log.read_text() == "an earlier flight\n", "the log of an earlier flight is as it was")
     jink.run("sim", CROSSING, "--no-vehicle", "--no-tracks", "--duration", 0.5, "--log", log)
     events = [record for record in map(json.loads, log.read_text().splitlines()) if record["type"] == "event"]
@@ -380,8 +379,8 @@ def outcomes(jink, folder):
     check(waits, f"replay: waits clear of an occupied target, {flight['outcome']}, clearance {flight['min_clearance']:.2f} m")
 
 
-def test(program):
-    jink = Jink(program)
+def test(program, instance):
+    jink = Jink(program, int(instance))
     with tempfile.TemporaryDirectory(prefix="jink-command-line-") as name:
         folder = pathlib.Path(name)
         for case in (bad_usage, help_reads, plans, algorithms, paper_slr):
