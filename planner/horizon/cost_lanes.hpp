@@ -3,6 +3,7 @@
 // the last step.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -52,7 +53,8 @@ struct CostLanes {
     if (!bounds.inside(scene.volume)) {
       for (std::size_t j = 1; j <= stretch.count; ++j) clearance.add_outside(scene, stretch.places[j]);
     }
-    if (bounds.squared_distance(scene.target) > scene.near_target * scene.near_target) {
+    if (bounds.squared_distance(scene.target.x(), scene.target.y(), scene.target.z()) >
+        scene.near_target * scene.near_target) {
       travel.pass((n + 1) * scene.step);
     } else {
       for (std::size_t j = 0; j < stretch.count; ++j) {
@@ -75,13 +77,32 @@ struct CostLanes {
       const double weight = scene.step / (0.5 + step * scene.step);  // what is near in time counts more
       if (near_bounds) clearance.add_near_bounds(scene, stretch.places[j + 1], weight);
       const PlainBox here = stretch.bounds_of(j);
-      for (const NearbyObstacle& obstacle : obstacles.during(step)) {
-        if (bounds.squared_distance(obstacle.middle) >= obstacle.near_squared) continue;
-        if (obstacle.solid < 0 || here.meets(obstacles.solid(obstacle).keep_out)) keep_away(obstacle, j, weight);
-      }
+      keep_away_from_moving(step, here, j, weight);
       for (std::size_t k = 0; k < found + boxes.size() - looked; ++k) {
         const std::size_t i = k < found ? standing[k] : looked + k - found;
         if (here.meets(boxes[i])) keep_away(obstacles.standing(i), j, weight);
+      }
+    }
+  }
+
+  /// From what moves in step j of the stretch, `step` of the horizon, in which all lanes are `here`.
+  [[gnu::always_inline]] void keep_away_from_moving(int step, const PlainBox& here, std::size_t j, double weight) {
+    constexpr std::size_t kAtOnce = 8;
+    static_assert(kAtOnce <= NearbyObstacles::kPadding);
+    const std::span<const NearbyObstacle> met = obstacles.during(step);
+    const NearbyMiddles middles = obstacles.middles(step);
+    for (std::size_t first = 0; first < met.size(); first += kAtOnce) {
+      Lanes<kAtOnce> sign;
+      for (std::size_t i = 0; i < kAtOnce; ++i) {
+        const std::size_t k = first + i;
+        const double squared = here.squared_distance(middles.x[k], middles.y[k], middles.z[k]);
+        sign[i] = squared < middles.near_squared[k] ? -1.0 : 1.0;
+      }
+      if (smallest(sign) > 0.0) continue;
+      for (std::size_t i = 0; i < std::min(kAtOnce, met.size() - first); ++i) {
+        const NearbyObstacle& obstacle = met[first + i];
+        if (sign[i] > 0.0) continue;
+        if (obstacle.solid < 0 || here.meets(obstacles.solid(obstacle).keep_out)) keep_away(obstacle, j, weight);
       }
     }
   }

@@ -108,10 +108,10 @@ struct PlainBox {
     return more > 0.0 ? more : 0.0;
   }
   /// Of a point to the box; 0 inside.
-  [[gnu::always_inline]] [[nodiscard]] double squared_distance(const Vec3& p) const {
-    const double x = outside(min_x, max_x, p.x());
-    const double y = outside(min_y, max_y, p.y());
-    const double z = outside(min_z, max_z, p.z());
+  [[gnu::always_inline]] [[nodiscard]] double squared_distance(double px, double py, double pz) const {
+    const double x = outside(min_x, max_x, px);
+    const double y = outside(min_y, max_y, py);
+    const double z = outside(min_z, max_z, pz);
     return x * x + y * y + z * z;
   }
   /// Whether it has a place in common with another box. True where a number is not one.

@@ -164,6 +164,13 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
   next_ = begin_;
   met_.resize(found_.size());
   for (std::size_t i = 0; i < found_.size(); ++i) met_[next_[step_[i]]++] = found_[i];
+  for (std::vector<double>* numbers : {&x_, &y_, &z_, &near_squared_}) numbers->resize(met_.size() + kPadding);
+  for (std::size_t i = 0; i < met_.size(); ++i) {
+    x_[i] = met_[i].middle.x();
+    y_[i] = met_[i].middle.y();
+    z_[i] = met_[i].middle.z();
+    near_squared_[i] = met_[i].near * met_[i].near;
+  }
 }
 
 template <typename Motion>
@@ -203,8 +210,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.hard = bent;
       obstacle.soft = bent + motion.uncertainty(clearance, end);
       obstacle.near = obstacle.soft + moved + slack;
-      obstacle.near_squared = obstacle.near * obstacle.near;
-      if (distance >= obstacle.near_squared) continue;
+      if (distance >= obstacle.near * obstacle.near) continue;
       if (is_solid) {
         const NearbySolid placed = solid_during(motion, obstacle, step, n, obstacle.soft - motion.radius() + slack);
         if (geometry::distance(where[n], placed.keep_out) > 0.0) continue;
@@ -226,8 +232,7 @@ void NearbyObstacles::add_standing(const base::Track& track, const Clearance& cl
   obstacle.hard = track.radius + clearance.hard_beside_standing;
   obstacle.soft = obstacle.hard + std::min(clearance.limit, clearance.sigma_factor * track.position_sigma);
   obstacle.near = obstacle.soft + kSlack;
-  obstacle.near_squared = obstacle.near * obstacle.near;
-  if (squared_distance(track.position, everywhere) >= obstacle.near_squared) return;
+  if (squared_distance(track.position, everywhere) >= obstacle.near * obstacle.near) return;
   const base::Box box = geometry::grown(geometry::box_around(track), obstacle.near - track.radius);
   const auto meets = [&box](const base::Box& part) { return geometry::distance(part, box) == 0.0; };
   if (std::none_of(where.begin(), where.end(), meets)) return;

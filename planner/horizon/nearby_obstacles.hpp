@@ -27,14 +27,13 @@ struct Clearance {
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
 struct NearbyObstacle {
-  Vec3 from,                  ///< its centre when the step begins, ENU, m
-      to;                     ///< its centre when the step ends
-  Vec3 middle;                ///< halfway
-  double hard = 0.0,          ///< distance of the centres that is asked for, never less
-      soft = 0.0;             ///< distance of the centres that is asked for, better not less
-  double near = 0.0;          ///< from the middle: farther away, the soft distance is kept throughout the step
-  double near_squared = 0.0;  ///< near²
-  int solid = -1;             ///< which of NearbyObstacles::solid() it is, none: a sphere
+  Vec3 from,          ///< its centre when the step begins, ENU, m
+      to;             ///< its centre when the step ends
+  Vec3 middle;        ///< halfway
+  double hard = 0.0,  ///< distance of the centres that is asked for, never less
+      soft = 0.0;     ///< distance of the centres that is asked for, better not less
+  double near = 0.0;  ///< from the middle: farther away, the soft distance is kept throughout the step
+  int solid = -1;     ///< which of NearbyObstacles::solid() it is, none: a sphere
 };
 
 /// A solid during one step. Of its distances `radius` is taken off those of NearbyObstacle, which are from the centre.
@@ -45,6 +44,14 @@ struct NearbySolid {
   double radius = 0.0;  ///< of the sphere that it is in, its margin not counted, m
   double near = 0.0;  ///< m; farther from it halfway by half of the vehicle's way, the soft distance is kept throughout
   base::Box keep_out;  ///< out of which the soft distance is kept throughout the step
+};
+
+/// Where the obstacles of one step are halfway, by coordinate, to be looked at several at once.
+struct NearbyMiddles {
+  const double* x;             ///< east, m; each to be read up to NearbyObstacles::kPadding beyond the last
+  const double* y;             ///< north, m
+  const double* z;             ///< up, m
+  const double* near_squared;  ///< NearbyObstacle::near², m²
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not
@@ -63,6 +70,12 @@ class NearbyObstacles {
   [[nodiscard]] std::span<const NearbyObstacle> during(int step) const {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
+  }
+  static constexpr std::size_t kPadding = 8;  ///< numbers that follow the middles of the last step
+  /// The middles of during(step), in its order; valid until the next build().
+  [[nodiscard]] NearbyMiddles middles(int step) const {
+    const std::size_t first = begin_[static_cast<std::size_t>(step)];
+    return {x_.data() + first, y_.data() + first, z_.data() + first, near_squared_.data() + first};
   }
   /// Of each obstacle that stands, out of which its soft distance is kept; valid until the next build().
   [[nodiscard]] std::span<const base::Box> standing_boxes() const { return boxes_; }
@@ -88,7 +101,8 @@ class NearbyObstacles {
                     const base::Box& everywhere);
 
   std::vector<Group> groups_;
-  std::vector<NearbyObstacle> found_, met_;  // by track, and by step
+  std::vector<NearbyObstacle> found_, met_;       // by track, and by step
+  std::vector<double> x_, y_, z_, near_squared_;  // of met_, as middles()
   std::vector<NearbyObstacle> standing_;
   std::vector<base::Box> boxes_;  // of what stands
   std::vector<NearbySolid> solids_;
