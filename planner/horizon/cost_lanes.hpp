@@ -87,8 +87,7 @@ struct CostLanes {
 
   /// From what moves in step j of the stretch, `step` of the horizon, in which all lanes are `here`.
   [[gnu::always_inline]] void keep_away_from_moving(int step, const PlainBox& here, std::size_t j, double weight) {
-    constexpr std::size_t kAtOnce = 8;
-    static_assert(kAtOnce <= NearbyObstacles::kPadding);
+    constexpr std::size_t kAtOnce = NearbyObstacles::kAtOnce;
     const std::span<const NearbyObstacle> met = obstacles.during(step);
     const NearbyMiddles middles = obstacles.middles(step);
     for (std::size_t first = 0; first < met.size(); first += kAtOnce) {

@@ -164,7 +164,7 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
   next_ = begin_;
   met_.resize(found_.size());
   for (std::size_t i = 0; i < found_.size(); ++i) met_[next_[step_[i]]++] = found_[i];
-  for (std::vector<double>* numbers : {&x_, &y_, &z_, &near_squared_}) numbers->resize(met_.size() + kPadding);
+  for (std::vector<double>* numbers : {&x_, &y_, &z_, &near_squared_}) numbers->resize(met_.size() + kAtOnce);
   for (std::size_t i = 0; i < met_.size(); ++i) {
     x_[i] = met_[i].middle.x();
     y_[i] = met_[i].middle.y();

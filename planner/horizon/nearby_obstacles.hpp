@@ -48,7 +48,7 @@ struct NearbySolid {
 
 /// Where the obstacles of one step are halfway, by coordinate, to be looked at several at once.
 struct NearbyMiddles {
-  const double* x;             ///< east, m; each to be read up to NearbyObstacles::kPadding beyond the last
+  const double* x;             ///< east, m; each to be read in whole groups of NearbyObstacles::kAtOnce
   const double* y;             ///< north, m
   const double* z;             ///< up, m
   const double* near_squared;  ///< NearbyObstacle::near², m²
@@ -71,7 +71,7 @@ class NearbyObstacles {
     const auto n = static_cast<std::size_t>(step);
     return {met_.data() + begin_[n], begin_[n + 1] - begin_[n]};
   }
-  static constexpr std::size_t kPadding = 8;  ///< numbers that follow the middles of the last step
+  static constexpr std::size_t kAtOnce = 8;  ///< middles that are looked at together; so many may follow the last
   /// The middles of during(step), in its order; valid until the next build().
   [[nodiscard]] NearbyMiddles middles(int step) const {
     const std::size_t first = begin_[static_cast<std::size_t>(step)];
