@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Other people's clients against `jink sim`, each beside a simulator of its own: MAVSDK-Python 3's usual examples, a session
-of MAVProxy, and libmav, which reads the stream with no code in common with ours or pymavlink's. They are in .venv/clients
-(tools/setup.sh test), for MAVSDK-Python 3 has the name of the wheel that jink is built with.
+"""Other people's clients against `jink sim`: MAVSDK-Python 3's usual examples, a session of MAVProxy, and libmav, which reads
+the stream with no code in common with ours or pymavlink's. They are in .venv/clients (tools/setup.sh test), for
+MAVSDK-Python 3 has the name of the wheel that jink is built with.
 
-    test_foreign_clients.py JINK FIRST_INSTANCE
+    test_foreign_clients.py JINK INSTANCE mavsdk|mavproxy|libmav
 """
 
-import concurrent.futures
 import os
 import pathlib
 import subprocess
-import time
 
 import yaml
 
-from flight import SOURCE, Arena, Failed, check, interrupt, kept_lines, main, say, wait, wait_until
+from flight import SOURCE, Arena, Failed, check, interrupt, main, say, wait, wait_until
 
 HERE = pathlib.Path(__file__).resolve().parent
 CLIENTS = SOURCE / ".venv" / "clients" / "bin"
@@ -56,7 +54,8 @@ def libmav(arena):
 
 
 class MavProxy:
-    """Typed into, and read from a file."""
+    """Typed into, and read from a file. It takes 0.7 ms of a core for a message, so it keeps up with PX4's 400 in a second
+    only where nothing else runs: what is said once is otherwise lost in its full socket."""
 
     def __init__(self, arena):
         self.output = arena.folder / "mavproxy.txt"
@@ -84,9 +83,10 @@ class MavProxy:
 def mavproxy(arena):
     waypoints = arena.folder / "waypoints.txt"
     waypoints.write_text(WAYPOINTS)
-    sim = simulator(arena)
     client = MavProxy(arena)
-    client.expect("Detected vehicle", "Mode LOITER", " parameters")
+    client.expect("Waiting for heartbeat")
+    sim = simulator(arena, speed=1)
+    client.expect("Detected vehicle", "Mode LOITER", " parameters", "Ready for takeoff!")
     client.type("param show MIS_TAKEOFF_ALT", "MIS_TAKEOFF_ALT  2.5")
     client.type(f"wp load {waypoints}", "Sent all 3 waypoints", "TYPE_MISSION: ACCEPTED")
     client.type("wp list", "Requesting 3 waypoints", "22 6 47.3977", "21 6 47.3978")
@@ -100,27 +100,11 @@ def mavproxy(arena):
     check(interrupt(sim) == 0, "sim ends with exit status 0")
 
 
-def test(jink, first_instance):
+def test(jink, instance, client):
     if not CLIENTS.exists():
         raise Failed(f"no {CLIENTS.parent}: run tools/setup.sh test")
-
-    def run(number, part):
-        begin = time.monotonic()
-        with kept_lines() as lines:
-            try:
-                with Arena(jink, int(first_instance) + number) as arena:
-                    part(arena)
-            except Failed as failure:
-                say(f"FAIL {part.__name__}: {failure}")
-                return False, lines.getvalue()
-            say(f"     {part.__name__} took {time.monotonic() - begin:.1f} s")
-        return True, lines.getvalue()
-
-    with concurrent.futures.ThreadPoolExecutor() as pool:
-        parts = [pool.submit(run, number, part) for number, part in enumerate((mavsdk, mavproxy, libmav))]
-    results = [part.result() for part in parts]
-    print("".join(lines for _, lines in results), flush=True)
-    check(all(held for held, _ in results), "all clients get along with the simulator")
+    with Arena(jink, int(instance)) as arena:
+        {"mavsdk": mavsdk, "mavproxy": mavproxy, "libmav": libmav}[client](arena)
 
 
 main(test)
