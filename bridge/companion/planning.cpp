@@ -221,6 +221,8 @@ void Planning::keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahe
   const double aside = std::atan2(ahead.y(), ahead.x()) - state.yaw;
   const bool blind = !mission_.cloud->all_round && ahead.head<2>().norm() > kBeside && std::cos(aside) < kInView;
   request.vehicle.max_speed = std::min(request.vehicle.max_speed, std::max(kSlowest, fastest));
+  // What is slow until it looks along its way is worth no less time: else to wait where it stands is next to nothing.
+  request.time_price = std::min(request.vehicle.cruise_speed, request.vehicle.max_speed);
   request.vehicle.cruise_speed =
       std::min({request.vehicle.cruise_speed, request.vehicle.max_speed, blind ? kSlowest : planner::base::kInfinity});
 }

@@ -23,7 +23,7 @@ bool is_valid(const PathRequest& request) {
          std::all_of(request.standing.begin(), request.standing.end(),
                      [](const base::Track& t) { return geometry::is_valid(t) && geometry::is_at_rest(t); }) &&
          is_amount(request.track_acceleration, geometry::kHardest) && is_amount(request.volume_clearance) &&
-         is_amount(request.sudden_change, geometry::kFastest) &&
+         is_amount(request.sudden_change, geometry::kFastest) && is_amount(request.time_price, geometry::kFastest) &&
          std::all_of(request.way.begin(), request.way.end(),
                      [](const Vec3& place) { return is_within(place, geometry::kFarthest); }) &&
          geometry::is_valid_world(request.volume, request.tracks, request.paths, request.acceleration_trust);

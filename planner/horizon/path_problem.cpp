@@ -88,7 +88,8 @@ void PathProblem::prepare(const PathRequest& request, const std::optional<Vec3>&
   scene_.visit_steps =
       request.visit ? std::max(1.0, std::round(settings_.visit_time / settings_.step)) : base::kInfinity;
   scene_.via = via;
-  scene_.time_weight = (via ? settings_.hurry : 1.0) * settings_.time_weight;
+  const double price = std::max(1.0, request.time_price / request.vehicle.cruise_speed);
+  scene_.time_weight = (via ? settings_.hurry : 1.0) * price * settings_.time_weight;
   scene_.volume = request.volume;
   scene_.inner_volume = inner_volume(request);
   scene_.per_clearance = 1.0 / std::max(kLeastClearance, request.volume_clearance);

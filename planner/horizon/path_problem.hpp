@@ -34,8 +34,9 @@ struct PathRequest {
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
   double sudden_change = 0.0;                    ///< by which a noisy track's velocity may be another at once, m/s
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
-  bool stuck = false;                            ///< the vehicle has come no nearer to the target for a while
-  bool visit = false;                            ///< to have been at the target is enough: it need not stay free
+  double time_price = 0.0;  ///< length that a lost second counts as, m/s; at least the cruise speed
+  bool stuck = false;       ///< the vehicle has come no nearer to the target for a while
+  bool visit = false;       ///< to have been at the target is enough: it need not stay free
   std::vector<Vec3> way{};  ///< corners of a way to the target that a search begins with, the target last; or none
 
   /// One that keeps the margin of the settings and expects of tracks what they say.
@@ -52,12 +53,12 @@ struct PathRequest {
 /// the variables are, the motion is flyable at every instant; with all of them 0 it is unobstructed flight.
 ///
 /// f1: length flown in the horizon plus the straight rest (Eq. (2) over the whole path) plus the time lost against
-/// unobstructed flight, as length at cruise speed, plus a share of the mean distance from it, so that of equal paths
-/// the one at cruise speed wins; with PathRequest::visit length and time count until the target has been visited.
-/// f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and how soon the path dips
-/// into the clearance that the tracks' uncertainty asks for, and into PathRequest::volume_clearance of the volume's
-/// bounds (a quarter of the volume at most, and not beside the target). Violation: the same for the hard margin, and
-/// for leaving the volume.
+/// unobstructed flight, as length at cruise speed (or PathRequest::time_price), plus a share of the mean distance from
+/// it, so that of equal paths the one at cruise speed wins; with PathRequest::visit length and time count until the
+/// target has been visited. f2: sum of the steering angles between the legs (Eq. (3)), rad. f3: how deep, how long and
+/// how soon the path dips into the clearance that the tracks' uncertainty asks for, and into
+/// PathRequest::volume_clearance of the volume's bounds (a quarter of the volume at most, and not beside the target).
+/// Violation: the same for the hard margin, and for leaving the volume.
 class PathProblem final : public optimizer::Problem {
  public:
   /// Throws std::invalid_argument for no waypoint, a step or time that is not positive, or more than 256 steps.

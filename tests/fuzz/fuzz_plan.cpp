@@ -165,6 +165,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
                                        &r.margin,
                                        &r.track_acceleration,
                                        &r.sudden_change,
+                                       &r.time_price,
                                        &r.acceleration_trust,
                                        &track.position[axis],
                                        &track.velocity[axis],
@@ -216,6 +217,7 @@ Case any_case(Numbers& n, Numbers& of_bodies) {
   r.margin = n.in(0.0, 0.5);
   r.track_acceleration = n.in(0.0, 1.0);
   r.sudden_change = n.one_in(2) ? 0.0 : n.in(0.0, 3.0);
+  r.time_price = n.one_in(2) ? 0.0 : n.in(0.0, 5.0);
   r.acceleration_trust = n.one_in(4) ? base::kInfinity : n.in(0.0, 2.0);
   r.stuck = n.one_in(8);
   r.visit = n.one_in(8);

@@ -210,8 +210,8 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 // All of it: the names in brackets are all that the types have, and one more would not compile here.
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, volume_clearance, vehicle, request_tracks, request_paths,
-               request_standing, margin, standing_margin, track_acceleration, sudden_change, trust, stuck, visit, way] =
-      job.request;
+               request_standing, margin, standing_margin, track_acceleration, sudden_change, trust, time_price, stuck,
+               visit, way] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -230,7 +230,14 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
       .exact(track_acceleration)
       .key("sudden_change")
       .exact(sudden_change);
-  line_.key("acceleration_trust").exact(trust).key("stuck").flag(stuck).key("visit").flag(visit);
+  line_.key("acceleration_trust")
+      .exact(trust)
+      .key("time_price")
+      .exact(time_price)
+      .key("stuck")
+      .flag(stuck)
+      .key("visit")
+      .flag(visit);
   line_.key("way").open('[');
   for (const Vec3& place : way) line_.exact_vector(place);
   line_.close(']');

@@ -166,6 +166,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   request.acceleration_trust = exact(member(from, "acceleration_trust"), "acceleration_trust");
   // Older logs have no such key.
   if (from.contains("sudden_change")) request.sudden_change = exact(from["sudden_change"], "sudden_change");
+  if (from.contains("time_price")) request.time_price = exact(from["time_price"], "time_price");
   if (from.contains("volume_clearance")) request.volume_clearance = exact(from["volume_clearance"], "volume_clearance");
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
   if (from.contains("visit")) request.visit = flag_of(from, "visit");
@@ -178,6 +179,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
                                     {"standing_margin", request.standing_margin},
                                     {"track_acceleration", request.track_acceleration},
                                     {"sudden_change", request.sudden_change},
+                                    {"time_price", request.time_price},
                                     {"acceleration_trust", request.acceleration_trust}})
     if (!(amount >= 0.0)) refuse("\"" + std::string(key) + "\" is below 0");
   for (const Json& item : list_of(from, "tracks")) job.tracks.push_back(track_of(item));

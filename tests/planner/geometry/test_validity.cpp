@@ -45,6 +45,7 @@ struct Everything {
     request.track_acceleration = 0.4;
     request.volume_clearance = 0.4;
     request.sudden_change = 1.5;
+    request.time_price = 2.5;
     request.acceleration_trust = 0.7;
   }
 
@@ -106,6 +107,7 @@ std::vector<Field> fields() {
       JINK_FIELD(kPlanners, request.track_acceleration, kNoAmount),
       JINK_FIELD(kPlanners, request.volume_clearance, kNoAmount),
       JINK_FIELD(kPlanners, request.sudden_change, kNoAmount),
+      JINK_FIELD(kPlanners, request.time_price, kNoAmount),
       JINK_FIELD(kPlanners | kVerifier, request.acceleration_trust, no_trust),
       JINK_FIELD(kAll, tracks[0].position[0], kNoPlace),
       JINK_FIELD(kAll, tracks[0].velocity[1], kNoPlace),

@@ -714,6 +714,30 @@ TEST(PathProblem, LostTimeCountsAsLength) {
   EXPECT_NEAR(problem.cost_of(late).f[0] - problem.cost_of(straight).f[0], 0.5 * 3.0 * 1.0, 0.16);
 }
 
+// Slow for now, a vehicle that waits loses the time all the same: by the cruise speed of the moment 8 s of it would be
+// worth less than a detour of 2 m.
+TEST(PathProblem, LostTimeHasAPriceThatAPassingSlownessDoesNotLower) {
+  base::HorizonSettings settings;
+  settings.deviation_weight = 0.0;
+  PathProblem problem{settings};
+  PathRequest r = request({4, 0, 2});
+  r.velocity.setZero();
+  r.vehicle.cruise_speed = 0.3;
+  const auto cost = [&](const base::TimedPath& path) { return problem.cost_of(path).f[0]; };
+  problem.prepare(r);
+  const double horizon = problem.horizon();
+  const base::TimedPath waits{{0, r.position, Vec3::Zero(), Vec3::Zero()},
+                              {horizon, r.position, Vec3::Zero(), Vec3::Zero()}};
+  const Vec3 aside = 0.5 * (r.position + r.target) + Vec3(0, 2, 0);
+  const base::TimedPath goes{{0, r.position, Vec3::Zero(), Vec3::Zero()},
+                             {0.3 * horizon, aside, Vec3::Zero(), Vec3::Zero()},
+                             {0.6 * horizon, r.target, Vec3::Zero(), Vec3::Zero()}};
+  EXPECT_LT(cost(waits), cost(goes));
+  r.time_price = 3.0;
+  problem.prepare(r);
+  EXPECT_GT(cost(waits), cost(goes));
+}
+
 // The way over the place instead of straight on counts in full, and as lost time, four times as much of it.
 TEST(PathProblem, TheWayOnLeadsOverAPlaceThatIsGiven) {
   base::HorizonSettings settings;

@@ -156,6 +156,7 @@ bridge::companion::PlanJob job(std::uint64_t number, std::vector<planner::base::
   job.request.margin = 0.41;
   job.request.track_acceleration = 0.3;
   job.request.sudden_change = 1.1;
+  job.request.time_price = 2.1;
   job.request.volume_clearance = 0.4;
   job.request.acceleration_trust = 0.6;
   return job;
@@ -422,6 +423,7 @@ TEST(FlightReplay, NamesTheLineOfABadRecord) {
       {"/from/margin", "-0.1", "is below 0"},
       {"/from/sudden_change", "-0.1", "is below 0"},
       {"/from/volume_clearance", "-0.1", "is below 0"},
+      {"/from/time_price", "-0.1", "is below 0"},
       {"/from/tracks/0", "[1,2,3]", "\"tracks\" is not a list of 14 numbers"},
       {"/from/tracks/0/0", "1.5", "an id that is not a whole number"},
       {"/from/previous", "[[0,0,0,0],[-1,0,0,0]]", "\"previous\" is not a path"},
