@@ -220,11 +220,12 @@ void Planning::keep_in_sight(const vehicle::VehicleState& state, const Vec3& ahe
   const double fastest = braking * (std::sqrt(reaction * reaction + 2.0 * std::max(0.0, room) / braking) - reaction);
   const double aside = std::atan2(ahead.y(), ahead.x()) - state.yaw;
   const bool blind = !mission_.cloud->all_round && ahead.head<2>().norm() > kBeside && std::cos(aside) < kInView;
+  double& cruise = request.vehicle.cruise_speed;
   request.vehicle.max_speed = std::min(request.vehicle.max_speed, std::max(kSlowest, fastest));
-  // What is slow until it looks along its way is worth no less time: else to wait where it stands is next to nothing.
-  request.time_price = std::min(request.vehicle.cruise_speed, request.vehicle.max_speed);
-  request.vehicle.cruise_speed =
-      std::min({request.vehicle.cruise_speed, request.vehicle.max_speed, blind ? kSlowest : planner::base::kInfinity});
+  cruise = std::min(cruise, request.vehicle.max_speed);
+  // It is slow for a moment: were its time worth less for that, it would wait there rather than go round.
+  request.time_price = cruise;
+  if (blind) cruise = std::min(cruise, kSlowest);
 }
 
 void Planning::keep_in_column(planner::horizon::PathRequest& request) const {

@@ -156,7 +156,7 @@ bridge::companion::PlanJob job(std::uint64_t number, std::vector<planner::base::
   job.request.margin = 0.41;
   job.request.track_acceleration = 0.3;
   job.request.sudden_change = 1.1;
-  job.request.time_price = 2.1;
+  job.request.time_price = 7.3;  // above the cruise speed, so that it counts
   job.request.volume_clearance = 0.4;
   job.request.acceleration_trust = 0.6;
   return job;
