@@ -82,7 +82,7 @@ bool Companion::step(double now) {
     reporter_.event(now, "request", std::string(vehicle::to_string(*decision.request)));
     link_.request(*decision.request);
   }
-  reporter_.announce(now, supervisor_, intake_, motion_.margin(), motion_.tracking_error().value_or(0.0));
+  reporter_.announce(now, supervisor_, intake_, motion_.margin(), motion_.offset().error().value_or(0.0));
   last_step_ = now;
   return !supervisor_.done();
 }

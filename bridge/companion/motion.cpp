@@ -19,19 +19,8 @@ constexpr double kLookStep = 0.25;         // s
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
 constexpr double kTakeoffTolerance = 0.5;  // m
-constexpr double kDrawn = 0.8;  // s, time constant with which it is forgotten how far the reference was drawn
-
-constexpr double kLeftToAutopilot = 0.1;        // m, that the vehicle is beside its reference and plans do not mend
-constexpr double kSpeedLeftToAutopilot = 0.25;  // m/s, likewise
 
 using Motion = supervisor::Decision::Motion;
-
-/// What of it is beyond a radius on the level, and beyond that in height.
-Vec3 beyond(Vec3 v, double radius) {
-  v.head<2>() *= 1.0 - radius / std::max(radius, v.head<2>().norm());
-  v.z() *= 1.0 - radius / std::max(radius, std::abs(v.z()));
-  return v;
-}
 
 double wrapped(double angle) {
   return std::remainder(angle, 2.0 * std::numbers::pi);
@@ -104,8 +93,7 @@ bool MotionControl::known(double now, const vehicle::VehicleState& state) const 
 }
 
 bool MotionControl::lost(double now, const vehicle::VehicleState& state) const {
-  return known(now, state) &&
-         (error(state) > kLostReference || drawn_.position.head<2>().norm() > share(now) * kLostReference);
+  return known(now, state) && error(state) > kLostReference;
 }
 
 void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
@@ -116,7 +104,7 @@ void MotionControl::follow(PlanResult result, const Vec3& estimate_shift) {
     point.t += result.job.start;
     point.position += shift;
   }
-  stream_.follow(std::move(path));
+  stream_.follow(std::move(path), result.job.offset);
   new_plan_ = true;
   if (result.job.newest_track) unsent_track_ = UnsentTrack{*result.job.newest_track, result.job.start};
 }
@@ -142,7 +130,6 @@ void MotionControl::send(double now, double dt, const vehicle::VehicleState& sta
     return;
   }
   unsent_since_.reset();
-  stream_.sent(now + state.link_delay, setpoint);
   reporter_.setpoint(now, setpoint);
   const double lead = std::max(companion.setpoint_lead, companion.committed_acceleration_lead()) + state.link_delay;
   if (unsent_track_ && now + lead >= unsent_track_->from) {
@@ -172,55 +159,22 @@ std::optional<Vec3> MotionControl::place_ahead(double now, const Vec3& position)
   return std::nullopt;
 }
 
-// As far as a reference that does not begin anew with each plan would be ahead of the vehicle, forgotten within a
-// second.
-void MotionControl::observe_drawn(double stamp) {
-  if (stamp <= observed_) return;
-  const double dt = stamp - observed_;
-  const planner::base::TimedPoint jump = stream_.jumped(std::exchange(observed_, stamp), stamp);
-  if (was_lost_) {
-    drawn_ = {};
-    return;
-  }
-  const double left = std::exp(-dt / kDrawn);
-  drawn_.velocity = left * drawn_.velocity + jump.velocity;
-  drawn_.position = left * drawn_.position + jump.position + dt * drawn_.velocity;
-}
-
 void MotionControl::observe(double now, const vehicle::VehicleState& state) {
   if (!stream_.active() || !known(now, state)) return;
-  const double stamp = state.motion.stamp;
-  const Vec3& position = state.motion.value.position;
-  stream_.observe(stamp, position, state.motion.value.velocity, state.in_air);
-  speed_ = state.motion.value.velocity.norm();
-  const planner::base::TimedPoint reference = stream_.reference(stamp);
-  offset_ = {stamp, position - reference.position, setpoints::OffsetForecast::kFade,
-             state.motion.value.velocity - stream_.velocity_error() - reference.velocity};
+  stream_.observe(state.motion.stamp, state.motion.value.position, state.motion.value.velocity);
+  const planner::base::TimedPoint reference = stream_.reference(state.motion.stamp);
+  const Vec3 offset = state.motion.value.position - reference.position;
   double& largest = reporter_.summary().largest_tracking_error;
-  largest = std::max(largest, offset_.offset.norm());
-  observe_drawn(stamp);
-  const bool was_lost = std::exchange(was_lost_, lost(now, state));
+  largest = std::max(largest, offset.norm());
+  const bool was_lost = std::exchange(was_lost_, offset.norm() > kLostReference);
   if (was_lost_ && !was_lost) {
     if (share(now) < kHelplessShare) helpless_at_ = now;
     share_ = std::max(kLeastShare, kBackOff * share(now));
     lost_at_ = now;
   }
-  if (was_lost_) return tracking_error_.forget();
-  tracking_error_.observe(stamp, position);
-  if (!tracking_error_.due(stamp)) return;
-  const auto there = stream_.expected(stamp + setpoints::TrackingError::kAhead);
-  if (there) tracking_error_.expect(stamp, *there);
-}
-
-planner::base::TimedPoint MotionControl::plan_start(double t) const {
-  planner::base::TimedPoint start = stream_.reference(t);
-  const std::optional<planner::base::TimedPoint> vehicle = stream_.expected(t);
-  if (was_lost_ || !vehicle) return start;
-  start.position += beyond(vehicle->position - start.position, kLeftToAutopilot);
-  start.velocity += beyond(vehicle->velocity - start.velocity, kSpeedLeftToAutopilot);
-  const double fastest = std::max(mission_.vehicle.max_speed, speed_);
-  start.velocity *= fastest / std::max(fastest, start.velocity.norm());
-  return start;
+  if (was_lost_) return offset_.forget();
+  offset_.observe(state.motion.stamp, offset,
+                  state.motion.value.velocity - stream_.velocity_error() - reference.velocity);
 }
 
 double MotionControl::share(double now) const {
@@ -229,18 +183,17 @@ double MotionControl::share(double now) const {
 
 void MotionControl::shift(const Vec3& by) {
   stream_.shift(by);
-  tracking_error_.forget();
   if (takeoff_point_) *takeoff_point_ += by;
   if (stop_point_) *stop_point_ += by;
 }
 
 double MotionControl::error(const vehicle::VehicleState& state) const {
-  return (state.motion.value.position - stream_.reference(state.motion.stamp).position).norm();
+  return (stream_.reference(state.motion.stamp).position - state.motion.value.position).norm();
 }
 
 double MotionControl::margin() const {
   const double least = settings_.horizon.margin;
-  return std::clamp(tracking_error_.value().value_or(least), least, std::max(least, settings_.companion.margin_limit));
+  return std::clamp(offset_.error().value_or(least), least, std::max(least, settings_.companion.margin_limit));
 }
 
 bool MotionControl::at_takeoff_height(const vehicle::VehicleState& state) const {

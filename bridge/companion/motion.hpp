@@ -63,22 +63,15 @@ class MotionControl {
   [[nodiscard]] const setpoints::SetpointStream& stream() const { return stream_; }
   /// Distance from the reference. Precondition: the stream is active.
   [[nodiscard]] double error(const vehicle::VehicleState& state) const;
-  /// So far from its reference the vehicle has lost it; or where plans drew that after it as far, for what is asked.
-  /// Where it is not known where it is, it has not.
+  /// So far from its reference the vehicle has lost it. Where it is not known where it is, it has not.
   [[nodiscard]] bool lost(double now, const vehicle::VehicleState& state) const;
   /// It has just lost it again, though no more than the least was asked for: what drives it is stronger.
   [[nodiscard]] bool cannot_follow(double now) const { return now - helpless_at_ < kHelpless; }
   /// The share of the stated acceleration and cruise speed that is asked for: less after each time that the reference
   /// was lost, for a vehicle that cannot follow, and slowly all again.
   [[nodiscard]] double share(double now) const;
-  /// Where a plan is to begin at time t, soon: on the reference, or as far beside it as the vehicle will be there in
-  /// position and velocity, less what its autopilot makes good. A plan that began where the vehicle is to a centimetre
-  /// would be a second controller around the autopilot's: PX4's SITL then shook at 1.5 Hz in hover.
-  [[nodiscard]] planner::base::TimedPoint plan_start(double t) const;
-  /// What it is beside its reference.
-  [[nodiscard]] const setpoints::OffsetForecast& offset() const { return offset_; }
-  /// How well it is known half a second before where it will be, m; none: not yet.
-  [[nodiscard]] std::optional<double> tracking_error() const { return tracking_error_.value(); }
+  /// How far the vehicle is beside its reference, and how well that is foreseen.
+  [[nodiscard]] const setpoints::TrackingOffset& offset() const { return offset_; }
   /// What plans are to keep from obstacles: the margin of the settings, or what the vehicle was off from where it was
   /// expected where that is more.
   [[nodiscard]] double margin() const;
@@ -89,7 +82,6 @@ class MotionControl {
  private:
   static constexpr double kLostReference = 1.2;  // m
   static constexpr double kHelpless = 2.0;       // s, after which it is tried again
-  void observe_drawn(double stamp);
   void take_off(double now, supervisor::Phase phase, const vehicle::VehicleState& state);
   [[nodiscard]] bool known(double now, const vehicle::VehicleState& state) const;
   [[nodiscard]] double heading(double dt, const vehicle::VehicleState& state, const std::optional<Vec3>& towards);
@@ -108,11 +100,7 @@ class MotionControl {
   setpoints::SetpointStream stream_;
   std::optional<Vec3> takeoff_point_;  // none: not taking off
   std::optional<Vec3> stop_point_;
-  setpoints::OffsetForecast offset_;
-  double speed_ = 0.0;  // m/s, the vehicle's newest
-  setpoints::TrackingError tracking_error_;
-  double observed_ = 0.0;            // s, the newest stamp
-  planner::base::TimedPoint drawn_;  // m, m/s: the reference after the vehicle, by plans that began where that would be
+  setpoints::TrackingOffset offset_;
   bool was_lost_ = false;
   double share_ = 1.0;  // at lost_at_
   double lost_at_ = 0.0;

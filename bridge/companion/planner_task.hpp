@@ -15,6 +15,7 @@
 #include "bridge/base/notifier.hpp"
 #include "bridge/map/mapper.hpp"
 #include "bridge/prediction/learned_motion.hpp"
+#include "bridge/setpoints/tracking_offset.hpp"
 #include "planner/geometry/static_map.hpp"
 #include "planner/horizon/guided_planner.hpp"
 #include "planner/horizon/horizon_planner.hpp"
@@ -59,6 +60,7 @@ struct PlanJob {
   double begun = 0.0;
   double start = 0.0;
   std::optional<double> newest_track;  ///< reception of the newest track message that went in
+  setpoints::OffsetForecast offset;    ///< of the vehicle from its reference, that the request was made with
   Vec3 estimate_shift = Vec3::Zero();  ///< VehicleState.estimate_shift that the request was made with
 };
 

@@ -303,10 +303,14 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   const bool from_vehicle = lost || (climbs && stream.plan(now).empty());
   const double share = motion.share(now);
   reporter_.reference_lost(now, lost && !climbs, motion.error(state), share);
+  // The plan begins where the vehicle will be, which is beside its reference.
+  if (!from_vehicle) job.offset = motion.offset().forecast();
+  const planner::base::TimedPoint reference = stream.reference(job.start);
+  const planner::base::TimedPoint offset = job.offset.at(job.start);
   planner::horizon::PathRequest& request = job.request;
-  const planner::base::TimedPoint begins = motion.plan_start(job.start);
-  request.position = from_vehicle ? base::position_at(state.motion, job.start) : begins.position;
-  request.velocity = from_vehicle ? state.motion.value.velocity : begins.velocity;
+  request.position =
+      from_vehicle ? base::position_at(state.motion, job.start) : Vec3(reference.position + offset.position);
+  request.velocity = from_vehicle ? state.motion.value.velocity : Vec3(reference.velocity + offset.velocity);
   request.target = goal.target;
   request.visit = goal.visit;
   request.stuck = goal.stuck;
@@ -354,7 +358,7 @@ std::vector<planner::base::TimedPath> Planning::stops(double now, const MotionCo
 planner::base::TimedPath Planning::stop(double now, Intake& intake, const MotionControl& motion,
                                         const MotionControl::StopStart& start) {
   setpoints::OffsetForecast offset;
-  if (start.on_reference) offset = motion.offset();
+  if (start.on_reference) offset = motion.offset().forecast();
   std::vector<planner::base::TimedPath> flown = stops(now, motion, start);
   for (planner::base::TimedPath& stop : flown) {
     stop = offset.added_to(std::move(stop));

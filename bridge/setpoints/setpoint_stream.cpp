@@ -14,6 +14,17 @@ constexpr std::size_t kLongestStop = 4000;  // points: no vehicle is so fast
 constexpr double kAtRest = 0.02;            // m/s
 constexpr double kJoint = 1e-6;             // s, between the end of one path and the beginning of the next
 constexpr double kHistory = 1.0;            // s, of a path followed before that is kept: positions arrive late
+constexpr double kLearningSpeed = 1.0;      // m/s, below which a lag says little about drag
+constexpr double kLearningRate = 6.0;       // 1/s, of normalised least mean squares
+constexpr double kLongestPause = 0.2;       // s, between two observations
+constexpr double kMostLacking = 5.0;        // m/s²; more is a reference that jumped
+constexpr double kMostDrag = 2.0;           // 1/s
+constexpr double kMostDamping = 0.5;        // of the acceleration
+// Of PX4's cascade (MPC_XY_P, MPC_XY_VEL_P_ACC): the acceleration that it makes of errors is what the feed-forward
+// lacked. Other gains make the learning faster or slower.
+constexpr double kVelocityGain = 1.8;                   // 1/s
+constexpr double kPositionGain = 0.95 * kVelocityGain;  // 1/s²
+constexpr double kSaturated = 0.95;                     // of the largest speed
 
 }  // namespace
 
@@ -23,7 +34,7 @@ void SetpointStream::hold(const Vec3& position, double now) {
   is_plan_ = false;
 }
 
-void SetpointStream::follow(planner::base::TimedPath path) {
+void SetpointStream::follow(planner::base::TimedPath path, const OffsetForecast& offset) {
   assert(!path.empty());
   if (!next_.empty()) {
     // The one that waits for its start, or was followed till now, goes on where the present one ends.
@@ -38,7 +49,8 @@ void SetpointStream::follow(planner::base::TimedPath path) {
     }
     current_.insert(current_.end(), next_.begin(), next_.end());
   }
-  next_ = std::move(path);
+  planned_ = std::move(path);
+  next_ = offset.taken_off(planned_);
   if (current_.empty()) current_ = next_;
   is_plan_ = true;
 }
@@ -91,28 +103,30 @@ double SetpointStream::deceleration(const Vec3& position, const Vec3& velocity) 
 }
 
 void SetpointStream::shift(const Vec3& by) {
-  for (planner::base::TimedPath* path : {&current_, &next_})
+  for (planner::base::TimedPath* path : {&current_, &next_, &planned_})
     for (planner::base::TimedPoint& point : *path) point.position += by;
   velocity_error_.forget();
-  response_.forget();
 }
 
-void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity, bool in_flight) {
+void SetpointStream::observe(double t, const Vec3& position, const Vec3& velocity) {
   velocity_error_.observe(t, position, velocity);
-  response_.observe(t, position, velocity - velocity_error_.value(), in_flight && is_plan_);
-}
-
-void SetpointStream::sent(double t, vehicle::Setpoint setpoint) {
-  setpoint.velocity -= velocity_error_.value();
-  response_.sent(t, setpoint);
-}
-
-std::optional<planner::base::TimedPoint> SetpointStream::expected(double t) const {
-  return response_.at(t, [this](double later) {
-    vehicle::Setpoint next = setpoint(later, 0.0);
-    next.velocity -= velocity_error_.value();
-    return next;
-  });
+  const std::optional<VelocityLag> last = std::exchange(lag_, std::nullopt);
+  if (!active() || !is_plan_) return;
+  const planner::base::TimedPoint point = reference(t);
+  const Vec3 late = point.position - position;
+  lag_ = VelocityLag{t, point.velocity - velocity + velocity_error_.value()};
+  if (!last || t <= last->t || t > last->t + kLongestPause) return;
+  const double speed = point.velocity.norm();
+  if (speed < kLearningSpeed) return;
+  if (late.dot(point.velocity) > 0.0 && velocity.norm() > kSaturated * settings_.max_speed) return;
+  // What the autopilot makes of the errors, and by what the vehicle gets slower for all that.
+  const double dt = t - last->t;
+  Vec3 lacking = kPositionGain * late + kVelocityGain * lag_->value + (lag_->value - last->value) / dt;
+  lacking *= std::min(1.0, kMostLacking / lacking.norm());
+  const double step = kLearningRate * dt / (1.0 + point.velocity.squaredNorm() + point.acceleration.squaredNorm());
+  drag_ = std::clamp(drag_ + step * lacking.dot(point.velocity), 0.0, kMostDrag);
+  const double of_acceleration = lacking.head<2>().dot(point.acceleration.head<2>());
+  damping_ = std::clamp(damping_ + step * of_acceleration, 0.0, kMostDamping);
 }
 
 planner::base::TimedPoint SetpointStream::reference(double t) const {
@@ -120,30 +134,17 @@ planner::base::TimedPoint SetpointStream::reference(double t) const {
   return planner::base::sample(!next_.empty() && t >= next_.front().t ? next_ : current_, t);
 }
 
-planner::base::TimedPoint SetpointStream::jumped(double from, double to) const {
-  planner::base::TimedPoint sum{to};
-  const auto jump = [&](const planner::base::TimedPoint& a, const planner::base::TimedPoint& b) {
-    if (b.t <= from || b.t > to || b.t - a.t > 2.0 * kJoint) return;
-    sum.position += b.position - a.position;
-    sum.velocity += b.velocity - a.velocity;
-  };
-  for (std::size_t i = 1; i < current_.size(); ++i) jump(current_[i - 1], current_[i]);
-  if (!next_.empty()) jump(planner::base::sample(current_, next_.front().t - kJoint), next_.front());
-  return sum;
-}
-
 vehicle::Setpoint SetpointStream::setpoint(double now, double yaw, double delay) const {
   const planner::base::TimedPoint point = reference(now + settings_.lead + delay);
   const planner::base::TimedPoint later = reference(now + settings_.acceleration_lead + delay);
-  const double taken_off = 1.0 + damping();
+  const double taken_off = 1.0 + damping_;
   const Vec3 acceleration = later.acceleration.cwiseProduct(Vec3(taken_off, taken_off, 1.0));
-  return {point.position, point.velocity + velocity_error_.value(),
-          acceleration + drag() * later.velocity - response_.unexplained(), yaw};
+  return {point.position, point.velocity + velocity_error_.value(), acceleration + drag_ * later.velocity, yaw};
 }
 
 planner::base::TimedPath SetpointStream::plan(double t) const {
   if (!is_plan_) return {};
-  return planner::base::remainder(next_, t);
+  return planner::base::remainder(planned_, t);
 }
 
 planner::base::TimedPath SetpointStream::ahead(double t) const {

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "bridge/setpoints/tracking_offset.hpp"
-#include "bridge/setpoints/vehicle_response.hpp"
 #include "bridge/vehicle/vehicle_link.hpp"
 #include "planner/base/trajectory.hpp"
 
@@ -26,13 +25,14 @@ class SetpointStream {
     double max_speed = planner::base::kInfinity;  ///< m/s, at which a vehicle that lags cannot catch up
   };
   explicit SetpointStream(const Settings& settings)
-      : settings_(settings), response_(settings.drag, settings.damping, settings.max_speed) {}
+      : settings_(settings), drag_(settings.drag), damping_(settings.damping) {}
 
   /// Stay at a point. Forgets any plan.
   void hold(const Vec3& position, double now);
   /// Follows `path`, whose times are the companion's clock, from its first time on; until then what was followed
-  /// before. Precondition: not empty.
-  void follow(planner::base::TimedPath path);
+  /// before. `offset`: what the vehicle is expected to be beside its reference, which is led so much beside the path.
+  /// Precondition: not empty.
+  void follow(planner::base::TimedPath path, const OffsetForecast& offset = {});
   /// Follows a way to rest at once, and stays at its end. Precondition: not empty.
   void brake(planner::base::TimedPath stop);
   /// The straight way to rest from there, as the deceleration allows. Where that would lead out of `volume` it is as
@@ -46,25 +46,18 @@ class SetpointStream {
 
   /// Where the vehicle is to be at time t. Precondition: active().
   [[nodiscard]] planner::base::TimedPoint reference(double t) const;
-  /// By how much the reference jumped after `from` until `to`, as plans began where the vehicle would be: in position
-  /// and velocity.
-  [[nodiscard]] planner::base::TimedPoint jumped(double from, double to) const;
   /// The setpoint to send at `now`, heading `yaw`. Its velocity is by how much the estimate of the velocity is off
   /// (VelocityError), so that the vehicle's own is the reference's.
   /// `delay`: s that the setpoint is on its way, by which it is led too.
   [[nodiscard]] vehicle::Setpoint setpoint(double now, double yaw, double delay = 0.0) const;
 
-  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t. In flight, of a plan, it learns
-  /// from that what the vehicle does of what is sent.
-  void observe(double t, const Vec3& position, const Vec3& velocity, bool in_flight = true);
-  /// A setpoint went on the wire, and is heard at time t.
-  void sent(double t, vehicle::Setpoint setpoint);
-  /// Where the vehicle will be at time t, following this stream, and how fast; none: it was not heard of lately.
-  [[nodiscard]] std::optional<planner::base::TimedPoint> expected(double t) const;
+  /// Takes in where the vehicle is, measured at `position` with `velocity` at time t. Learns drag and damping from it,
+  /// but not at the largest speed, at which no thrust makes good what is late.
+  void observe(double t, const Vec3& position, const Vec3& velocity);
   /// The drag that setpoints make up for now, 1/s.
-  [[nodiscard]] double drag() const { return response_.drag(); }
+  [[nodiscard]] double drag() const { return drag_; }
   /// The share of an acceleration that they add to it now.
-  [[nodiscard]] double damping() const { return response_.damping(); }
+  [[nodiscard]] double damping() const { return damping_; }
 
   [[nodiscard]] bool active() const { return !current_.empty(); }
   /// Of the autopilot's estimate, m/s: estimated minus true.
@@ -81,10 +74,17 @@ class SetpointStream {
 
   Settings settings_;
   VelocityError velocity_error_;
-  VehicleResponse response_;
+  struct VelocityLag {
+    double t;    // s
+    Vec3 value;  // m/s, reference minus vehicle
+  };
+  std::optional<VelocityLag> lag_;
+  double drag_;
+  double damping_;
   bool is_plan_ = false;
   planner::base::TimedPath current_;
-  planner::base::TimedPath next_;  // takes over at its first time
+  planner::base::TimedPath next_;     // takes over at its first time
+  planner::base::TimedPath planned_;  // the path that the vehicle is to fly along next_
 };
 
 }  // namespace jink::bridge::setpoints

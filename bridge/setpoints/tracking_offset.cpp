@@ -12,6 +12,7 @@ constexpr double kSmoothing = 0.5;  // s
 constexpr double kGap = 0.3;        // s, from which on a difference of positions says nothing
 constexpr double kBelieved = 0.8;   // of the difference
 constexpr double kMostError = 1.0;  // m/s
+constexpr double kJitter = 0.005;   // s
 constexpr double kQuantile = 0.95;
 constexpr std::size_t kEnough = 10;  // errors, a second's worth
 
@@ -49,32 +50,25 @@ planner::base::TimedPath OffsetForecast::taken_off(planner::base::TimedPath flow
   return moved(std::move(flown), *this, -1.0);
 }
 
-void TrackingError::expect(double t, const planner::base::TimedPoint& place) {
-  expected_at_ = t;
-  if (pending_count_ < pending_.size()) pending_[pending_count_++] = place;
+void TrackingOffset::observe(double t, const Vec3& offset, const Vec3& rate) {
+  if (kept_at_ && t <= newest_.begun) return;
+  newest_ = {t, offset, OffsetForecast::kFade, rate};
+  if (kept_at_ && t - *kept_at_ < kPeriod - kJitter) return;
+  kept_at_ = t;
+  judge();
+  forecasts_[forecast_count_++ % forecasts_.size()] = newest_;
 }
 
-void TrackingError::observe(double t, const Vec3& position) {
-  std::size_t judged = 0;
-  for (; judged < pending_count_ && pending_[judged].t <= t; ++judged) {
-    const planner::base::TimedPoint& place = pending_[judged];
-    errors_[error_count_++ % kKept] = (position - place.position - (t - place.t) * place.velocity).norm();
-  }
-  if (judged == 0) return;
-  std::move(pending_.begin() + static_cast<std::ptrdiff_t>(judged),
-            pending_.begin() + static_cast<std::ptrdiff_t>(pending_count_), pending_.begin());
-  pending_count_ -= judged;
+void TrackingOffset::judge() {
+  if (forecast_count_ < forecasts_.size()) return;
+  const OffsetForecast& oldest = forecasts_[forecast_count_ % forecasts_.size()];
+  errors_[error_count_++ % kKept] = (newest_.offset - oldest.at(newest_.begun).position).norm();
   const std::size_t count = std::min(error_count_, kKept);
   if (count < kEnough) return;
   std::array<double, kKept> sorted = errors_;
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(count - 1));
   std::nth_element(sorted.begin(), at, sorted.begin() + static_cast<std::ptrdiff_t>(count));
-  value_ = *at;
-}
-
-void TrackingError::forget() {
-  pending_count_ = 0;
-  expected_at_.reset();
+  error_ = *at;
 }
 
 void VelocityError::observe(double t, const Vec3& position, const Vec3& velocity) {
@@ -91,6 +85,12 @@ void VelocityError::observe(double t, const Vec3& position, const Vec3& velocity
 Vec3 VelocityError::value() const {
   const double size = difference_.norm();
   return size > 0.0 ? Vec3(kBelieved * std::min(1.0, kMostError / size) * difference_) : Vec3::Zero();
+}
+
+void TrackingOffset::forget() {
+  newest_ = {};
+  kept_at_.reset();
+  forecast_count_ = 0;
 }
 
 }  // namespace jink::bridge::setpoints

@@ -34,34 +34,35 @@ struct OffsetForecast {
   [[nodiscard]] planner::base::TimedPath taken_off(planner::base::TimedPath flown) const;
 };
 
-/// How far the vehicle has been from where it was expected to be half a second before. Not thread-safe.
-class TrackingError {
+/// Measures the offset and how wrong its forecasts have been. Not thread-safe.
+class TrackingOffset {
  public:
-  static constexpr double kAhead = 0.5;      ///< s: within it a plan has been renewed many times
-  static constexpr double kPeriod = 0.1;     ///< s, between two expectations
+  static constexpr double kAhead = 1.0;   ///< s, the forecasts that are judged: within it a plan has been renewed often
+  static constexpr double kPeriod = 0.1;  ///< s, between two that are kept
   static constexpr std::size_t kKept = 100;  ///< of the last 10 s
 
-  /// Whether the next expectation is due at time t.
-  [[nodiscard]] bool due(double t) const { return !expected_at_ || t - *expected_at_ >= kPeriod - kJitter; }
-  /// At time t the vehicle is expected to be there at the time of `place`, about kAhead later.
-  void expect(double t, const planner::base::TimedPoint& place);
-  /// At time t it is there.
-  void observe(double t, const Vec3& position);
-  /// What was expected is void: the estimate or the reference jumped.
+  /// `offset`: the vehicle's position minus the reference, at time t, and `rate`: so its velocity. Times that do not
+  /// grow are passed over.
+  void observe(double t, const Vec3& offset, const Vec3& rate);
+  /// The reference jumped: what was measured says nothing of the new one.
   void forget();
 
-  /// The distance, m, within which 95 % of the expectations of the last 10 s came true; none: fewer than a second's
-  /// worth have been judged.
-  [[nodiscard]] std::optional<double> value() const { return value_; }
+  /// From the newest offset on; none: zero.
+  [[nodiscard]] const OffsetForecast& forecast() const { return newest_; }
+  /// The distance, m, within which 95 % of the forecasts of the last 10 s came true kAhead later; none: fewer than a
+  /// second's worth have been judged.
+  [[nodiscard]] std::optional<double> error() const { return error_; }
 
  private:
-  static constexpr double kJitter = 0.005;              // s
-  std::array<planner::base::TimedPoint, 8> pending_{};  // the oldest first
-  std::size_t pending_count_ = 0;
-  std::optional<double> expected_at_;
+  void judge();
+
+  OffsetForecast newest_;
+  std::optional<double> kept_at_;
+  std::array<OffsetForecast, 11> forecasts_{};  // the last kAhead
+  std::size_t forecast_count_ = 0;
   std::array<double, kKept> errors_{};
   std::size_t error_count_ = 0;
-  std::optional<double> value_;
+  std::optional<double> error_;
 };
 
 /// By how much the autopilot's estimate of the horizontal velocity is off, as far as its own estimate of the position

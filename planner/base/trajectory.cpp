@@ -15,7 +15,8 @@ TimedPoint sample(const TimedPath& path, double t) {
   const TimedPoint& a = *(after - 1);
   const TimedPoint& b = *after;
   const double s = (t - a.t) / (b.t - a.t);
-  return {t, a.position + s * (b.position - a.position), a.velocity + s * (b.velocity - a.velocity), a.acceleration};
+  return {t, a.position + s * (b.position - a.position), a.velocity + s * (b.velocity - a.velocity),
+          a.acceleration + s * (b.acceleration - a.acceleration)};
 }
 
 double path_length(const TimedPath& path) {

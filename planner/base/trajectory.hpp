@@ -20,8 +20,7 @@ struct TimedPoint {
 /// Points with strictly increasing times; empty: no path.
 using TimedPath = std::vector<TimedPoint>;
 
-/// The path's state at time t, position and velocity linear between points, the acceleration that of the point before;
-/// before the first point the first, after the last the last with
+/// The path's state at time t, linear between points; before the first point the first, after the last the last with
 /// zero velocity and acceleration (the vehicle waits there). Precondition: not empty. O(log n).
 TimedPoint sample(const TimedPath& path, double t);
 

@@ -79,23 +79,38 @@ class FakePlanner final : public companion::PlannerTask {
     result.missed = now > result.job.start + 1e-9;
     if (valid) {
       result.plan.status = status;
-      planner::base::TimedPath& path = result.plan.path = straight(result.job.request);
+      const bool stops = result.job.goal == companion::Goal::Kind::kStop;
+      planner::base::TimedPath& path = result.plan.path;
+      path = stops ? stop(result.job.request) : straight(result.job.request);
       if (stays > 0.0) path.push_back({path.back().t + stays, path.back().position, Vec3::Zero(), Vec3::Zero()});
     }
     return result;
   }
 
-  /// From the request's state to its target as if there were nothing, cruising at `speed`.
+  /// At `speed` from the request's position to its target.
   [[nodiscard]] planner::base::TimedPath straight(const planner::horizon::PathRequest& request) const {
-    planner::horizon::PathRequest alone;
-    alone.position = request.position;
-    alone.velocity = request.velocity;
-    alone.target = request.target;
-    alone.vehicle = request.vehicle;
-    alone.vehicle.cruise_speed = speed;
-    planner::horizon::PathProblem problem{planner::base::HorizonSettings{}};
-    problem.prepare(alone);
-    return problem.unobstructed_motion();
+    const Vec3 way = request.target - request.position;
+    const double time = way.norm() / speed;
+    planner::base::TimedPath path;
+    for (double t = 0.0; t < time; t += 0.1)
+      path.push_back({t, request.position + t / time * way, way / time, Vec3::Zero()});
+    path.push_back({time + 1e-3, request.target, Vec3::Zero(), Vec3::Zero()});
+    return path;
+  }
+
+  /// From the request's velocity evenly down to rest at its target.
+  [[nodiscard]] static planner::base::TimedPath stop(const planner::horizon::PathRequest& request) {
+    const Vec3 way = request.target - request.position;
+    const double speed = request.velocity.norm();
+    if (speed < 0.05 || way.norm() < 0.01) return {{0.0, request.target, Vec3::Zero(), Vec3::Zero()}};
+    const double time = 2.0 * way.norm() / speed;
+    planner::base::TimedPath path;
+    for (double t = 0.0; t < time; t += 0.02) {
+      const double s = t / time;
+      path.push_back({t, request.position + s * (2.0 - s) * way, 2.0 * (1.0 - s) / time * way, Vec3::Zero()});
+    }
+    path.push_back({time + 1e-3, request.target, Vec3::Zero(), Vec3::Zero()});
+    return path;
   }
 
   std::vector<companion::PlanJob> jobs;

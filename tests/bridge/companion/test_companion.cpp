@@ -25,8 +25,8 @@ TEST(Companion, FliesAMissionFromTheGroundToHold) {
             (std::vector{vehicle::Command::kOffboard, vehicle::Command::kArm, vehicle::Command::kHold}));
   EXPECT_NEAR(summary.straight_length, 20.0, 0.5);
   EXPECT_NEAR(summary.path_length, 20.0, 0.6);
-  EXPECT_NEAR(summary.flight_time, 11.0, 1.0);
-  EXPECT_NEAR(summary.max_speed, 2.0, 0.3);
+  EXPECT_NEAR(summary.flight_time, 10.0, 1.0);
+  EXPECT_NEAR(summary.max_speed, 2.0, 0.1);
   EXPECT_GT(summary.plans, 80U);
   EXPECT_EQ(summary.plan_ms.size(), summary.plans);
   EXPECT_EQ(summary.deadline_misses, 0U);
@@ -96,7 +96,6 @@ TEST(Companion, RaisesALowStartToMinHeightAndSaysSo) {
   climbs.fly();
   EXPECT_EQ(climbs.recorder.count("raised"), 1);
   EXPECT_NE(climbs.recorder.last("raised").find("0.4"), std::string::npos) << climbs.recorder.last("raised");
-  climbs.run(2.0);
   EXPECT_GE(climbs.last().position.z(), 1.0);
 
   Loop flies(m);  // whose take-off height does not matter
@@ -172,10 +171,11 @@ TEST(Companion, AppliesAPlanFromItsStart) {
   EXPECT_NEAR(start - loop.planner.jobs.front().begun, 0.3, 1e-9);
   while (loop.now < start) {
     loop.turn();
-    EXPECT_LT(loop.last().velocity.norm(), 1e-3);
+    EXPECT_EQ(loop.last().velocity, Vec3::Zero());
   }
-  while (loop.last().velocity.x() < 1e-2) loop.turn();
-  EXPECT_NEAR(loop.now, start, 0.06);
+  while (loop.last().velocity.x() == 0.0) loop.turn();
+  EXPECT_NEAR(loop.last().velocity.x(), 2.0, 1e-9);
+  EXPECT_NEAR(loop.last().position.x(), 2.0 * (loop.now - Loop::kTurn - start), 1e-6);
   EXPECT_EQ(loop.companion.summary().deadline_misses, 0U);
 }
 
@@ -226,45 +226,48 @@ TEST(Companion, CruisesSlowlyPastWhatItDoesNotUnderstand) {
 
 TEST(Companion, PlansFromWhereTheVehicleWillBe) {
   Loop loop;
-  loop.airborne();
-  while (loop.now < 4.0) {
-    loop.seen = {{.id = 3, .position = {5, 20.0 - loop.now, 2}, .velocity = {0, -1, 0}, .radius = 0.4}};
-    loop.turn();
-  }
+  loop.seen = {{.id = 3, .position = {5, 5, 2}, .velocity = {0, -1, 0}, .radius = 0.4}};
+  loop.airborne().fly();
   const PlanJob& job = loop.planner.jobs.back();
   const PlanJob& before = loop.planner.jobs[loop.planner.jobs.size() - 2];
-  EXPECT_NEAR((job.request.position - before.request.position).x(), 2.0 * (job.start - before.start), 0.01);
-  EXPECT_NEAR(job.request.velocity.x(), 2.0, 0.05);
+  EXPECT_NEAR((job.request.position - before.request.position).x(), 2.0 * (job.start - before.start), 1e-4);
+  EXPECT_NEAR(job.request.velocity.x(), 2.0, 1e-3);
   ASSERT_FALSE(job.previous.empty());
   EXPECT_NEAR(job.previous.front().t, 0.0, 1e-9);
   ASSERT_EQ(job.tracks.size(), 1U);
-  EXPECT_NEAR(job.tracks[0].position.y(), 20.0 - job.start, 1e-6);
+  EXPECT_NEAR(job.tracks[0].position.y(), 5.0 - (job.start - job.newest_track.value()), 1e-9);
 }
 
-TEST(Companion, AVehicleBesideItsReferenceIsPlannedFromWhereItWillBe) {
+TEST(Companion, AVehicleBesideItsReferenceIsPlannedFromWhereItIsAndTheReferenceDoesNotJump) {
   Loop loop;
   loop.airborne().fly();
-  loop.beside = {0, 0.3, 0.1};
-  loop.run(0.1);
+  const Vec3 beside(0, 0.6, 0.2);
+  for (loop.beside = 0.1 * beside; loop.beside.norm() < beside.norm(); loop.beside += 0.1 * beside) loop.run(0.1);
+  loop.run(0.5);
+  const std::size_t sent = loop.link.sent.size();
   const PlanJob& job = loop.planner.jobs.back();
-  const auto& vehicle = loop.link.telemetry.motion.value;
-  EXPECT_LT((job.request.position - vehicle.position - (job.start - loop.now) * vehicle.velocity).norm(), 0.1);
-  EXPECT_GT(job.request.position.y(), 0.15);
+  EXPECT_LT(
+      (job.request.position - loop.link.telemetry.motion.value.position - (job.start - loop.now) * loop.last().velocity)
+          .norm(),
+      0.15);
+  EXPECT_LT((job.offset.offset - beside - Vec3(0.08, 0, 0)).norm(), 0.1);
   // The plan not to give up begins there too, and is back on the old one's way at its end.
   ASSERT_FALSE(job.previous.empty());
   EXPECT_LT((job.previous.front().position - job.request.position).norm(), 1e-9);
   EXPECT_EQ(job.previous.back().position, job.request.target);
+  loop.run(1.0);
+  for (std::size_t i = sent; i + 1 < loop.link.sent.size(); ++i)
+    EXPECT_LT((loop.link.sent[i + 1].position - loop.link.sent[i].position).norm(), 0.06) << i;
 }
 
 // It lags behind a reference that dodges: what is planned from the reference's velocity is not what is flown.
 TEST(Companion, APlanBeginsWithTheVehiclesVelocityAndOneThatIsKeptIsSoonRejoined) {
   Loop loop;
   loop.airborne().fly();
-  loop.model->set_wind({-4, 3, 0});
-  loop.run(0.3);
+  loop.drift = {-0.4, 0.3, 0};
+  loop.run(0.2);
   const PlanJob& job = loop.planner.jobs.back();
-  const Vec3 blown = loop.link.telemetry.motion.value.velocity - loop.last().velocity;
-  EXPECT_GT((job.request.velocity - Vec3(2, 0, 0)).dot(blown), 0.1 * blown.norm());
+  EXPECT_LT((job.offset.rate - loop.drift).norm(), 0.01);
   ASSERT_FALSE(job.previous.empty());
   EXPECT_LT((job.previous.front().velocity - job.request.velocity).norm(), 1e-9);
   const PlanJob& before = *(loop.planner.jobs.end() - 2);
@@ -275,7 +278,7 @@ TEST(Companion, APlanBeginsWithTheVehiclesVelocityAndOneThatIsKeptIsSoonRejoined
         .norm();
   };
   EXPECT_GT(beside(0.0), 0.005);
-  EXPECT_LT(beside(2.5), 1e-6);
+  EXPECT_LT(beside(2.0), 1e-6);
 }
 
 TEST(Companion, CountsALatePlanAsAMiss) {
@@ -330,7 +333,7 @@ TEST(Companion, WhatIsTakenOverBelowTheLowestHeightClimbsBeforeItFliesOn) {
   loop.follows = false;
   loop.run(1.0);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
-  EXPECT_GT(loop.last().position.z(), 0.4);
+  EXPECT_EQ(loop.last().position, Vec3(0, 0, 1));
   ASSERT_FALSE(loop.planner.jobs.empty());
   for (const PlanJob& job : loop.planner.jobs) {
     EXPECT_EQ(job.goal, Goal::Kind::kClimb);
@@ -393,20 +396,21 @@ TEST(Companion, AVehicleThatLosesItsReferenceIsAskedForLess) {
   const auto asked = [&] { return loop.planner.jobs.back().request.vehicle; };
   const planner::base::VehicleLimits all = asked();
   double expected = 1.0;
-  for (int losses = 1; losses <= 2; ++losses) {
+  for (int losses = 1; losses <= 4; ++losses) {
     SCOPED_TRACE(losses);
+    loop.follows = false;
     loop.link.telemetry.motion.value.position += Vec3(0, 1.5, 0);
-    loop.run(0.6);
+    loop.run(0.3);
+    loop.follows = true;
+    loop.run(0.3);
     expected = std::max(0.25, 0.7 * expected);
-    EXPECT_LE(asked().cruise_speed / all.cruise_speed, expected + 0.03);
-    EXPECT_NEAR(asked().max_acceleration / all.max_acceleration, asked().cruise_speed / all.cruise_speed, 1e-9);
-    EXPECT_GE(loop.recorder.count("reference_lost"), losses);
-    loop.run(1.0);
+    EXPECT_NEAR(asked().cruise_speed / all.cruise_speed, expected, 0.03);
+    EXPECT_NEAR(asked().max_acceleration / all.max_acceleration, expected, 0.03);
+    EXPECT_EQ(loop.recorder.count("reference_lost"), losses);
   }
-  const double least = asked().cruise_speed / all.cruise_speed;
-  loop.run(20.0);
-  EXPECT_NEAR(asked().cruise_speed / all.cruise_speed, least + 0.2, 0.01);
-  loop.run(60.0);
+  loop.run(40.0);
+  EXPECT_NEAR(asked().cruise_speed / all.cruise_speed, 0.65, 0.03);
+  loop.run(40.0);
   EXPECT_EQ(asked().cruise_speed, all.cruise_speed);
   EXPECT_EQ(asked().max_acceleration, all.max_acceleration);
 }
@@ -517,7 +521,7 @@ TEST(Companion, HoldsClearOfATargetUntilItStaysFree) {
   loop.run(0.5);
   EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kHold);
   EXPECT_EQ(loop.companion.summary().outcome, supervisor::Outcome::kReached);
-  EXPECT_TRUE(loop.companion.summary().reason.starts_with("target reached, free after 7."))
+  EXPECT_TRUE(loop.companion.summary().reason.starts_with("target reached, free after 6."))
       << loop.companion.summary().reason;
 }
 

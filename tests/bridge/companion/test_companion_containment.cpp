@@ -87,7 +87,7 @@ TEST(CompanionContainment, WhatCannotFollowEndsInHold) {
   EXPECT_TRUE(loop.companion.supervisor().done());
   EXPECT_NE(loop.companion.supervisor().reason().find("the vehicle cannot follow its setpoints"), std::string::npos)
       << loop.companion.supervisor().reason();
-  EXPECT_GE(loop.recorder.count("reference_lost"), 3);
+  EXPECT_GE(loop.recorder.count("reference_lost"), 4);
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ TEST(Companion, BrakesOnTheWireWhenTheTracksGoStaleAndFliesOnWhenTheyCome) {
   EXPECT_EQ(loop.recorder.count("hazard"), 1);
   const double speed = loop.last().velocity.norm();
   loop.run(0.5);
-  EXPECT_NEAR(speed - loop.last().velocity.norm(), 1.0, 0.3);  // 2 m/s²
-  loop.run(1.5);
-  EXPECT_LT(loop.last().velocity.norm(), 0.2);
+  EXPECT_NEAR(speed - loop.last().velocity.norm(), 1.0, 0.1);  // 2 m/s²
+  loop.run(1.0);
+  EXPECT_LT(loop.last().velocity.norm(), 0.02);
   loop.tracks = true;
-  loop.run(1.5);
+  loop.run(0.5);
   EXPECT_EQ(loop.recorder.count("hazard_over"), 1);
-  EXPECT_NEAR(loop.last().velocity.norm(), 2.0, 0.1);
+  EXPECT_NEAR(loop.last().velocity.norm(), 2.0, 0.05);
   EXPECT_EQ(loop.recorder.count("hazard"), 1);
 }
 
@@ -96,7 +96,7 @@ TEST(Companion, AnInterruptBrakesThenHolds) {
   loop.run(1.0);
   loop.companion.interrupt(loop.now);
   loop.run(0.5);
-  EXPECT_NEAR(loop.last().velocity.x(), 1.0, 0.35);
+  EXPECT_NEAR(loop.last().velocity.x(), 1.0, 0.1);
   loop.run(3.0);
   EXPECT_EQ(loop.link.requests.back(), vehicle::Command::kHold);
   EXPECT_TRUE(loop.companion.supervisor().done());
@@ -116,7 +116,7 @@ TEST(Companion, AnInterruptInTheClimbStopsTheClimb) {
   EXPECT_EQ(loop.last().position.z(), 2.0);
   loop.companion.interrupt(loop.now);
   loop.run(0.4);
-  EXPECT_LT(loop.last().position.z(), 1.0);
+  EXPECT_LT(loop.last().position.z(), 0.95);
   EXPECT_GE(loop.last().position.z(), 0.8);
 }
 
@@ -136,10 +136,10 @@ TEST(Companion, AClimbGoesOnAfterAHazard) {
   loop.run(3.0);
   const double height = loop.last().position.z();
   EXPECT_LT(height, 5.0);
-  EXPECT_NEAR(loop.last().velocity.z(), 0.0, 0.05);
+  EXPECT_EQ(loop.last().velocity.z(), 0.0);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
   loop.tracks = true;
-  loop.run(1.0);
+  loop.run(0.5);
   EXPECT_GT(loop.last().position.z(), height + 0.2);
   EXPECT_EQ(loop.planner.jobs.back().goal, Goal::Kind::kClimb);
   EXPECT_EQ(loop.planner.jobs.back().request.target, Vec3(0, 0, 8));
@@ -157,7 +157,7 @@ TEST(Companion, BrakesAtTheVehicleWhereTrackingIsLost) {
   lost.link.telemetry.motion.value.position += Vec3(0, 2.5, 0);
   lost.companion.interrupt(lost.now);
   lost.run(0.2);
-  EXPECT_NEAR(lost.last().position.y(), 2.5, 0.2);
+  EXPECT_NEAR(lost.last().position.y(), 2.5, 0.1);
 }
 
 TEST(Companion, AJumpOfTheEstimateShiftsThePlan) {
@@ -196,9 +196,9 @@ TEST(Companion, TheMarginGrowsWithWhatWasNotForeseenAndComesBack) {
     loop.beside.y() = i % 2 == 0 ? 0.0 : 0.6;
     loop.run(1.0);
   }
-  EXPECT_NEAR(loop.planner.jobs.back().request.margin, 0.6, 0.1);
+  EXPECT_NEAR(loop.planner.jobs.back().request.margin, 0.6, 0.05);
   EXPECT_EQ(loop.recorder.count("margin"), 1);
-  EXPECT_NEAR(loop.companion.summary().largest_margin, 0.6, 0.1);
+  EXPECT_NEAR(loop.companion.summary().largest_margin, 0.6, 0.05);
   loop.run(12.0);
   EXPECT_EQ(loop.planner.jobs.back().request.margin, margin);
   EXPECT_EQ(loop.recorder.last("margin"), "back to 0.35 m");

@@ -62,37 +62,39 @@ TEST(OffsetForecast, WithoutTimeToDieDownThereIsNone) {
   EXPECT_EQ((OffsetForecast{0.0, {1, 1, 1}, 0.0}.at(0.0).position), Vec3::Zero());
 }
 
-TEST(TrackingError, IsHowFarTheVehicleWasFromWhereItWasExpected) {
-  TrackingError error;
+TEST(TrackingOffset, ForecastsTheNewestAndKnowsHowWrongItWas) {
+  TrackingOffset offset;
+  EXPECT_EQ(offset.forecast().at(3.0).position, Vec3::Zero());
+  EXPECT_FALSE(offset.error());
   double t = 0.0;
-  const auto fly = [&](double seconds, double off) {
-    for (const double end = t + seconds; t < end; t += 0.02) {
-      error.observe(t, {2.0 * t, off, 1});
-      const double then = t + TrackingError::kAhead;
-      if (error.due(t)) error.expect(t, {then, {2.0 * then, 0, 1}, {2, 0, 0}, Vec3::Zero()});
-    }
+  const auto run = [&](double seconds, const auto& value) {
+    for (const double end = t + seconds; t < end; t += 0.02) offset.observe(t, value(t), Vec3::Zero());
   };
-  fly(1.2, 0.5);
-  EXPECT_FALSE(error.value());  // too few have come to their time
-  fly(0.6, 0.5);
-  ASSERT_TRUE(error.value());
-  EXPECT_NEAR(*error.value(), 0.5, 1e-9);
-  fly(20.0, 0.0);
-  EXPECT_NEAR(*error.value(), 0.0, 1e-9);
-  fly(1.0, 0.3);  // a tenth of the last 10 s
-  EXPECT_NEAR(*error.value(), 0.3, 1e-9);
+  run(1.9, [](double) { return Vec3(0.5, 0, 0); });
+  EXPECT_FALSE(offset.error());  // too few forecasts have come to their second
+  run(3.0, [](double) { return Vec3(0.5, 0, 0); });
+  EXPECT_EQ(offset.forecast().offset, Vec3(0.5, 0, 0));
+  ASSERT_TRUE(offset.error());
+  EXPECT_LT(*offset.error(), 0.03);  // 0.5 m was foreseen
+  // A swing of 4 s is 90 degrees ahead of where it was foreseen a second before.
+  run(12.0, [](double at) { return Vec3(0.5 * std::sin(0.5 * std::numbers::pi * at), 0, 0); });
+  EXPECT_NEAR(*offset.error(), 0.5 * std::sqrt(2.0), 0.04);
+  run(12.0, [](double) { return Vec3(0, 0, 0); });
+  EXPECT_LT(*offset.error(), 1e-9);
 }
 
-TEST(TrackingError, AJumpOfTheEstimateIsNone) {
-  TrackingError error;
-  for (double t = 0.0; t < 5.0; t += 0.02) {
-    if (std::abs(t - 3.0) < 1e-6) error.forget();
-    const Vec3 place(t < 3.0 - 1e-6 ? 0.0 : 9.0, 0, 1);
-    error.observe(t, place);
-    if (error.due(t)) error.expect(t, {t + TrackingError::kAhead, place, Vec3::Zero(), Vec3::Zero()});
-  }
-  ASSERT_TRUE(error.value());
-  EXPECT_EQ(*error.value(), 0.0);
+TEST(TrackingOffset, AJumpOfTheReferenceIsNotAnErrorAndTimesThatDoNotGrowAreNone) {
+  TrackingOffset offset;
+  for (double t = 0.0; t < 4.0; t += 0.02) offset.observe(t, {0.9, 0, 0}, Vec3::Zero());
+  const double before = offset.error().value();
+  offset.forget();
+  EXPECT_EQ(offset.forecast().offset, Vec3::Zero());
+  for (double t = 4.0; t < 8.0; t += 0.02) offset.observe(t, {0, 0.1, 0}, Vec3::Zero());
+  EXPECT_LE(*offset.error(), before);
+  const OffsetForecast newest = offset.forecast();
+  offset.observe(newest.begun, {7, 7, 7}, {1, 1, 1});
+  offset.observe(newest.begun - 1.0, {7, 7, 7}, {1, 1, 1});
+  EXPECT_EQ(offset.forecast().offset, newest.offset);
 }
 
 // The position does what the vehicle does; the velocity is 0.4 m/s off.

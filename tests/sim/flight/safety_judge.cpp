@@ -18,8 +18,7 @@ constexpr double kThere = 0.6;             // m, from the target, which counts a
 constexpr double kOutside = 2.5;           // m, beyond the geofence: what a vehicle overshoots that nobody steers
 constexpr double kFastest = 6.0;           // m/s: the vehicle's 5, and what the air takes it along
 constexpr double kTouchDown = 1.5;         // m/s: from so low that it counts as landed it may fall
-constexpr double kFalls = 1.3;             // m: from lower, which is where plans end above the ground (1 m) and how
-                                           // near an arrival is, it may have landed, as far as jink can tell
+constexpr double kFalls = 1.0;             // m: from lower it may have landed, as far as jink can tell
 constexpr double kLow = 0.6;               // m, above the ground: no height to hang at
 constexpr double kLifted = 0.1;            // m, above what the autopilot takes for landed
 

@@ -90,7 +90,6 @@ struct Track {
 struct Flown {
   Track track;
   std::vector<Setpoint> setpoints;
-  std::vector<Vec3> velocities;  ///< estimated
   Vec3 velocity = Vec3::Zero();  ///< true, at the beginning
   double height = 0.0;           ///< of the ground
 };
@@ -131,7 +130,6 @@ inline Flown flown(const std::string& name) {
         part(wanted, 6) - velocity_gain.cwiseProduct(error) - integral + derivative_gain.cwiseProduct(rate);
     setpoint.yaw = std::remainder(1.5707963267948966 - at(recording.at("attitude"), t, false)[2], 6.283185307179586);
     flown.setpoints.push_back(setpoint);
-    flown.velocities.push_back(velocity);
     flown.track.add(part(wanted, 0), part(believed, 0), part(was, 0), part(believed, 3) - part(was, 3));
   }
   return flown;
