@@ -49,7 +49,8 @@ def test(jink, instance):
             status, summary, events = flight(jink, int(instance), version, [LOW], **way)
             check(status == 0 and summary["outcome"] == "reached",
                   f"{version}, {'DDS' if way else 'MAVLink'}: {summary['outcome']}, {summary['reason']}")
-            check(any(e["name"] == "battery" and e["detail"] == "low" for e in events), "with a low battery")
+            told = {name: [(e["t"], e["detail"]) for e in events if e["name"] == name] for name in ("battery", "phase")}
+            check(any(detail == "low" for _, detail in told["battery"]), f"with a low battery: {told}")
             check(not any("failsafe" in hazard["what"] for hazard in summary["hazards"]), "which is taken for no failsafe")
         for low, reason in ((LOW, "position by pilot"),
                             (LOW_AT_ONCE, "left to the pilot" if version == "1.14" else "position by pilot")):
