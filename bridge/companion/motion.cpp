@@ -18,7 +18,7 @@ constexpr double kLookAhead = 20.0;        // s, along what is followed: who fli
 constexpr double kLookStep = 0.25;         // s
 constexpr double kYawDistance = 1.0;       // m, a nearer waypoint does not turn it
 constexpr double kSlack = 0.9;             // of a setpoint's period, after which the next may go
-constexpr double kTakeoffTolerance = 0.5;  // m
+constexpr double kTakeoffTolerance = 0.2;  // m
 
 using Motion = supervisor::Decision::Motion;
 

@@ -133,8 +133,9 @@ void Simulator::watch_clock() {
   for (std::size_t k = 0; k < vehicles_.size(); ++k) {
     Vehicle& vehicle = vehicles_[k];
     const bool offboard = vehicle.autopilot.mode() == vehicle::FlightMode::kOffboard;
-    const double away = (vehicle.autopilot.true_motion().position - vehicle.spec.start).norm();
-    if (offboard && away <= kAtStart) vehicle.was_at_start = true;
+    const auto away = [&](const vehicle::Motion& motion) { return (motion.position - vehicle.spec.start).norm(); };
+    const double nearest = std::min(away(vehicle.autopilot.true_motion()), away(vehicle.autopilot.estimated_motion()));
+    if (offboard && nearest <= kAtStart) vehicle.was_at_start = true;
     if (!offboard || !vehicle.autopilot.armed() || vehicle.was_at_start || vehicle.away_said) continue;
     if (!vehicle.away_from) vehicle.away_from = now_;
     if (now_ - *vehicle.away_from < kPatience) continue;

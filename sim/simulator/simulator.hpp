@@ -49,9 +49,10 @@ struct SimulatorParts {
 };
 
 /// The vehicles stand on the ground below their starts. The obstacles stand at their t = 0 positions until every
-/// vehicle has been within 0.5 m of its start in OFFBOARD; then the scenario's clock runs. A collision stops the motors
-/// of the vehicles involved. The scenario's faults happen to them, their companions' links and the tracks; each
-/// beginning and end is an event. All vehicles share the scenario's origin, as a place on earth too. Not thread-safe.
+/// vehicle has been within 0.5 m of its start in OFFBOARD, in truth or by its own estimate, which is what its companion
+/// can fly by; then the scenario's clock runs. A collision stops the motors of the vehicles involved. The scenario's
+/// faults happen to them, their companions' links and the tracks; each beginning and end is an event. All vehicles
+/// share the scenario's origin, as a place on earth too. Not thread-safe.
 class Simulator {
  public:
   static constexpr double kAtStart = 0.5;  ///< m, from the start, in OFFBOARD: ready for the clock

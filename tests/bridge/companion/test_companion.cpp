@@ -43,6 +43,19 @@ TEST(Companion, TakesOffAboveWhereItStands) {
   EXPECT_EQ(loop.last().velocity, Vec3::Zero());
 }
 
+TEST(Companion, TakesOffToItsHeightBeforeItFliesOn) {
+  Loop loop;
+  loop.follows = false;
+  loop.run(1.0);
+  loop.link.telemetry.motion.value.position = {0, 0, 1.75};
+  loop.link.telemetry.in_air = true;
+  loop.run(1.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kClimbing);
+  loop.link.telemetry.motion.value.position.z() = 1.85;
+  loop.run(1.0);
+  EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
+}
+
 TEST(Companion, FliesNotWithAnAutopilotThatCutsItsMotors) {
   Loop loop;
   loop.link.telemetry.failsafe_parameters.offboard_loss = 7.0;

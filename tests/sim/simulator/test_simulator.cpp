@@ -119,6 +119,23 @@ TEST(Simulator, TheClockWaitsForEveryVehicle) {
   EXPECT_GT(stage.publications.back().message.tracks.at(0).position.y(), -7.5);
 }
 
+// What a companion can fly by is the estimate: the vehicle itself may pass its start a metre beside it.
+TEST(Simulator, TheClockStartsWhereTheVehicleBelievesToBeAtItsStart) {
+  config::Scenario scenario = two_vehicles();
+  scenario.vehicles.clear();
+  scenario.estimate = {.px4 = false, .drift = 2.0};
+  Stage stage(scenario);
+  const vehicle::Autopilot& autopilot = stage.simulator->autopilot(0);
+  const auto away = [&](const vehicle::Motion& motion) { return (motion.position - scenario.start).norm(); };
+  double nearest = away(autopilot.true_motion());
+  EXPECT_TRUE(stage.run(60.0, {scenario.start}, [&] {
+    if (autopilot.mode() == vehicle::FlightMode::kOffboard) nearest = std::min(nearest, away(autopilot.true_motion()));
+    return stage.simulator->clock_runs();
+  }));
+  EXPECT_GT(nearest, Simulator::kAtStart);
+  EXPECT_LE(away(autopilot.estimated_motion()), Simulator::kAtStart + 0.01);
+}
+
 TEST(Simulator, WhatChasesAVehicleComesOnceTheClockRuns) {
   config::Scenario scenario = two_vehicles();
   scenario.vehicles.clear();
