@@ -14,10 +14,10 @@ using bridge::supervisor::Phase;
 constexpr int kStepsPerTurn = 5;     // 20 ms
 constexpr double kTracksHz = 10.0;   // what learns from tracks is most of the cost
 constexpr double kReady = 6.0;       // s, from when on the autopilot may be armed
-constexpr double kPlansFrom = 12.0;  // s, about when plans are flown
+constexpr double kPlansFrom = 12.6;  // s, about when plans are flown
 constexpr double kAtSpeed = 1.0;     // s later, when it flies at its cruise speed
 // s, from the climb's beginning, from which the time limit counts.
-constexpr double kClimb = 5.0, kToTarget = 11.8, kToLanding = 13.2;
+constexpr double kClimb = 5.6, kToTarget = 12.4, kToLanding = 13.8;
 constexpr double kLeast = 0.01;      // s, of a time limit
 constexpr double kPlanTakes = 0.02;  // s
 
