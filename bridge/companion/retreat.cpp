@@ -19,7 +19,7 @@ constexpr double kStay = 2.5;         // s, and to a refuge
 constexpr double kMeeting = 2.0;      // s, before it might be met, from which on a mover is approached slowly,
 constexpr double kMeetingNew = 1.0;   // s, and one that is new
 constexpr double kCalm = 0.4;         // s, for which the way on is to be safe enough
-constexpr double kBetter = 0.5;       // times the risk of what is flown, at most, of a refuge
+constexpr double kBetter = 0.8;       // times the risk of what is flown, at most, of a refuge
 constexpr double kAlike = 1e-3;       // probabilities that do not differ
 constexpr std::array kDistances = {1.5, 3.0, 5.0};  // m, of refuges from where the vehicle can stop
 constexpr int kRound = 8;                           // directions on the level, and above and below it
@@ -90,7 +90,8 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
     return prediction::contact_risk(path, predictions, laws, radius, until,
                                     {planner::base::HorizonSettings::kReaction, evasion});
   };
-  const double evasion = kEvading * problem_.settings().planned_acceleration(request.vehicle.max_acceleration);
+  const planner::base::HorizonSettings hardest = problem_.settings().for_emergencies();
+  const double evasion = kEvading * hardest.planned_acceleration(request.vehicle.max_acceleration);
   risk_ = risk_of(flown, kLookedAhead, evasion);
   entry_risk_ = 0.0;
   if (!begun_) {

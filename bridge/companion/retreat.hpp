@@ -26,7 +26,7 @@ class Retreat {
   static constexpr double kLess = 0.00125;  ///< below which the vehicle goes on
   static constexpr double kLongest = 8.0;   ///< s, for which it waits for that; then it goes on for as long
 
-  explicit Retreat(const planner::base::HorizonSettings& settings) : problem_(settings.for_emergencies()) {}
+  explicit Retreat(const planner::base::HorizonSettings& settings) : problem_(settings) {}
 
   /// Where a plan is to lead to instead of request.target; none: to that. `flown`: what is followed at present, from
   /// the request's state at its time 0 on; of the request's obstacles only what stands is looked at. `predictions` are

@@ -109,6 +109,36 @@ TEST(Retreat, DoesNotWaitForEver) {
   EXPECT_TRUE(hovers.choose_for(1.0, wild));
 }
 
+// What a refuge is worth is what flying there as plans do is worth, not as hard as the vehicle can.
+TEST(Retreat, ARefugeIsSaferByTheMotionThatPlansHave) {
+  int refuges = 0;
+  for (const double flown_to : {0.0, 30.0}) {
+    for (double away = 3.5; away <= 6.0; away += 0.25) {
+      Hovers hovers;
+      (void)hovers.choose({});
+      hovers.request.velocity = {3.0, 0.0, 0.0};
+      std::vector<Prediction> wild{mover({away, 0.0, 0.0}, 5.0)};
+      wild[0].radius = 1.5;
+      planner::horizon::PathProblem problem{planner::base::HorizonSettings{}};
+      const auto planned = [&](const Vec3& target) {
+        PathRequest request = hovers.request;
+        request.target = target;
+        problem.prepare(request);
+        return problem.unobstructed_motion();
+      };
+      const auto risk = [&](const TimedPath& path) {
+        return prediction::contact_risk(path, wild, {}, hovers.request.vehicle.radius, 2.5, {});
+      };
+      hovers.flown = planned({flown_to, 0.0, 0.0});
+      const std::optional<Vec3> refuge = hovers.choose_for(2 * kPeriod, wild);
+      if (!refuge) continue;
+      ++refuges;
+      EXPECT_LT(risk(planned(*refuge)), 0.8 * risk(hovers.flown)) << flown_to << " " << away;
+    }
+  }
+  EXPECT_GT(refuges, 5);
+}
+
 // A wall behind it: the way back is none.
 TEST(Retreat, LeadsThroughNothingThatStands) {
   Hovers hovers;
