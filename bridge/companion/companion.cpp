@@ -278,13 +278,16 @@ std::optional<Goal::Kind> Companion::goal_kind(supervisor::Decision::Motion moti
 Goal Companion::goal(double now, Goal::Kind kind) {
   if (kind == Goal::Kind::kStop) {  // and back inside
     const planner::base::Box volume = flight_volume(mission_);
-    return {kind, motion_.stop_point()->cwiseMax(volume.min).cwiseMin(volume.max)};
+    return {.kind = kind, .target = motion_.stop_point()->cwiseMax(volume.min).cwiseMin(volume.max), .holds = true};
   }
-  if (kind == Goal::Kind::kClimb) return {kind, motion_.takeoff_point().value_or(climb_end(mission_, intake_.state()))};
+  if (kind == Goal::Kind::kClimb)
+    return {.kind = kind, .target = motion_.takeoff_point().value_or(climb_end(mission_, intake_.state()))};
   if (planning_.retreats()) route_.begin_anew();
   // Who has arrived stays.
-  if (supervisor_.arrived()) return {kind, supervisor_.holds(now) ? route_.target() : end()};
-  return {kind, route_.target(), /*visit=*/true, route_.stuck(now, intake_.state().motion.value.position)};
+  if (supervisor_.arrived())
+    return {.kind = kind, .target = supervisor_.holds(now) ? route_.target() : end(), .holds = true};
+  const bool stuck = route_.stuck(now, intake_.state().motion.value.position);
+  return {.kind = kind, .target = route_.target(), .visit = true, .stuck = stuck};
 }
 
 // To land is to come down by plans as far as that goes: the autopilot's landing looks at no obstacles.

@@ -29,6 +29,7 @@ struct Goal {
   Vec3 target = Vec3::Zero();  ///< where it leads to, local ENU, m
   bool visit = false;          ///< PathRequest::visit
   bool stuck = false;          ///< PathRequest::stuck
+  bool holds = false;          ///< PathRequest::holds
 };
 
 /// What a plan sees of the static map. With it the same obstacles are found again.

@@ -278,8 +278,7 @@ void Planning::retreat(double now, Intake& intake, const MotionControl& motion, 
   reporter_.retreats(now, refuge, retreat_.risk());
   if (!refuge) return;
   request.target = *refuge;
-  request.visit = false;
-  request.stuck = false;
+  request.visit = request.stuck = request.holds = false;
   // Who sees ahead alone does not hurry to where he does not look.
   if (!mission_.cloud) request.vehicle.cruise_speed = motion.share(now) * request.vehicle.max_speed;
 }
@@ -314,6 +313,7 @@ PlanJob Planning::job(double now, Intake& intake, const MotionControl& motion, c
   request.target = goal.target;
   request.visit = goal.visit;
   request.stuck = goal.stuck;
+  request.holds = goal.holds;
   reporter_.stuck(now, request.stuck);
   // Gaps are as wide as they are: who has waited in vain for one does not ask for more than is asked for at the start.
   demand(state, request.stuck ? settings_.horizon.margin : motion.margin(), request);

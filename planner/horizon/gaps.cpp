@@ -109,12 +109,13 @@ std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame
   return chosen;
 }
 
-bool stays_taken(const PathRequest& request, const Vec3& place, const base::HorizonSettings& settings) {
+Taken taken(const PathRequest& request, const Vec3& place, double clearance, const base::HorizonSettings& settings) {
   const geometry::PathFrame frame(request.position, place);
-  for (int k = 0; k <= settings.waypoints; ++k) {
-    if (lacking(blockers(request, frame, place, k * settings.leg(), 0.0), place) <= 0.0) return false;
-  }
-  return true;
+  const int times = 2 * settings.waypoints + 1;
+  int count = 0;
+  for (int k = 0; k < times; ++k)
+    count += lacking(blockers(request, frame, place, 0.5 * k * settings.leg(), clearance), place) > 0.0 ? 1 : 0;
+  return count == 0 ? Taken::kNever : count == times ? Taken::kThroughout : Taken::kAtTimes;
 }
 
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e) {

@@ -25,8 +25,11 @@ struct Gap {
 std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame& frame, const Vec3& centre, double t,
                            const base::HorizonSettings& settings, std::size_t most);
 
-/// Whether a vehicle at that place would touch something now and at each waypoint's time. O(obstacles · waypoints).
-bool stays_taken(const PathRequest& request, const Vec3& place, const base::HorizonSettings& settings);
+/// When a place is nearer to something than is asked for, within a horizon.
+enum class Taken { kNever, kAtTimes, kThroughout };
+/// Looks at a vehicle at that place, `clearance` from surface to surface, m, now, at each waypoint's time and halfway
+/// between. O(obstacles · waypoints).
+Taken taken(const PathRequest& request, const Vec3& place, double clearance, const base::HorizonSettings& settings);
 
 /// The point of unobstructed flight's line beside an obstacle that is met.
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e);

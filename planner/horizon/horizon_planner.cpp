@@ -70,6 +70,16 @@ double largest_distance(const base::TimedPath& path, const base::TimedPath& othe
   return most;
 }
 
+/// Nobody gets to the target; or the vehicle stays there, has time, and something moves past.
+bool makes_room(const PathRequest& asked, const base::HorizonSettings& settings) {
+  if (!asked.stuck && !asked.holds) return false;
+  if (taken(asked, asked.target, 0.0, settings) == Taken::kThroughout) return true;
+  if (!asked.holds) return false;
+  PathRequest moving = asked;
+  moving.standing = {};
+  return taken(moving, asked.target, asked.margin, settings) == Taken::kAtTimes;
+}
+
 }  // namespace
 
 std::vector<double> initial_solutions(const PathProblem& problem, const PathRequest& request,
@@ -116,8 +126,8 @@ verify::Plan HorizonPlanner::make(const PathRequest& asked, const base::TimedPat
   if (!is_valid(asked)) return {};
   PathRequest request = asked;
   weights_ = {settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
-  if (asked.stuck && stays_taken(asked, asked.target, settings_)) {
-    // Nobody gets there, and to come nearer helps nothing: room comes before all else, since who is there may set off.
+  if (makes_room(asked, settings_)) {
+    // To be there or nearer helps nothing: room comes before all else, since who is there may set off or turn.
     request.stuck = false;
     request.sudden_change = kWaitingRoom * asked.sudden_change;
     weights_[0] *= kWaitingHaste;

@@ -36,6 +36,7 @@ struct PathRequest {
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   double time_price = 0.0;  ///< length that a lost second counts as, m/s; at least the cruise speed
   bool stuck = false;       ///< the vehicle has come no nearer to the target for a while
+  bool holds = false;       ///< the vehicle has arrived, or stops: it is to stay there, and has time
   bool visit = false;       ///< to have been at the target is enough: it need not stay free
   std::vector<Vec3> way{};  ///< corners of a way to the target that a search begins with, the target last; or none
 

@@ -220,6 +220,7 @@ Case any_case(Numbers& n, Numbers& of_bodies) {
   r.time_price = n.one_in(2) ? 0.0 : n.in(0.0, 5.0);
   r.acceleration_trust = n.one_in(4) ? base::kInfinity : n.in(0.0, 2.0);
   r.stuck = n.one_in(8);
+  r.holds = n.one_in(8);
   r.visit = n.one_in(8);
   const std::size_t tracks = n.below(9);
   for (std::size_t i = 0; i < tracks; ++i) c.tracks.push_back(any_track(n, r, i));

@@ -211,7 +211,7 @@ void FlightLog::write_content(double t, const bridge::companion::PlanResult& res
 void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   const auto& [position, velocity, target, volume, volume_clearance, vehicle, request_tracks, request_paths,
                request_standing, margin, standing_margin, track_acceleration, sudden_change, trust, time_price, stuck,
-               visit, way] = job.request;
+               holds, visit, way] = job.request;
   const auto& [radius, length, mass, max_speed, cruise_speed, max_acceleration, max_jerk, max_climb, drag, damping] =
       vehicle;  // plans do not depend on the last two
   line_.key("from").open('{').key("begun").number(job.begun).key("start").number(job.start);
@@ -236,6 +236,8 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
       .exact(time_price)
       .key("stuck")
       .flag(stuck)
+      .key("holds")
+      .flag(holds)
       .key("visit")
       .flag(visit);
   line_.key("way").open('[');

@@ -49,9 +49,9 @@ struct FlightLogOptions {
 /// What a plan was made from is in `searches`, [[scheduled, done], [scheduled, done]] generations of the search and of
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], volume_clearance, margin,
-/// standing_margin, track_acceleration, sudden_change, acceleration_trust, time_price, stuck, visit, tracks: [[id, x,
-/// y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age], ...], at the end of each that has a
-/// solid {yaw, yaw_rate, prism: [half edges, corner, rounding, centre, three axes] or hull: [vertices]}
+/// standing_margin, track_acceleration, sudden_change, acceleration_trust, time_price, stuck, holds, visit, tracks:
+/// [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age], ...], at the end of each that
+/// has a solid {yaw, yaw_rate, prism: [half edges, corner, rounding, centre, three axes] or hull: [vertices]}
 /// (planner::base::Solid, numbers in a row), standing: [id, ...] of the tracks that count among what stands, forecasts:
 /// [{track, radius, position_sigma, velocity_sigma, plain_until, bounces: [begin, velocity, min, max] or swings:
 /// [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin, position_sigma,

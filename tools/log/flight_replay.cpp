@@ -169,6 +169,7 @@ bridge::companion::PlanJob job_of(const Json& record, const Json& from) {
   if (from.contains("time_price")) request.time_price = exact(from["time_price"], "time_price");
   if (from.contains("volume_clearance")) request.volume_clearance = exact(from["volume_clearance"], "volume_clearance");
   if (from.contains("stuck")) request.stuck = flag_of(from, "stuck");
+  if (from.contains("holds")) request.holds = flag_of(from, "holds");
   if (from.contains("visit")) request.visit = flag_of(from, "visit");
   if (from.contains("way")) {
     for (const Json& place : list_of(from, "way")) request.way.push_back(exact_vector(place, "way"));

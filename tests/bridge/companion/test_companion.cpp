@@ -524,10 +524,12 @@ TEST(Companion, HoldsClearOfATargetUntilItStaysFree) {
   loop.planner.status = planner::verify::PlanStatus::kProgresses;
   loop.airborne().fly();
   EXPECT_TRUE(loop.planner.jobs.back().request.visit);
+  EXPECT_FALSE(loop.planner.jobs.back().request.holds);
   loop.run(8.0);
   EXPECT_EQ(loop.companion.supervisor().phase(), supervisor::Phase::kFlying);
   EXPECT_EQ(loop.recorder.count("arrived"), 1);
   EXPECT_FALSE(loop.planner.jobs.back().request.visit);
+  EXPECT_TRUE(loop.planner.jobs.back().request.holds);
   EXPECT_FALSE(loop.planner.jobs.back().request.stuck);  // it is where it is to be
   EXPECT_LT(loop.companion.summary().flight_time, 3.0);  // to the target
   loop.planner.status = planner::verify::PlanStatus::kReaches;

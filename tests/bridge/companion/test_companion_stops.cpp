@@ -94,6 +94,7 @@ TEST(CompanionStops, PlansToWhereItStopsAreFlownWhileTheHazardLasts) {
   const Vec3 stop = loop.planner.jobs.back().request.target;
   EXPECT_EQ(loop.planner.jobs.back().goal, Goal::Kind::kStop);
   EXPECT_FALSE(loop.planner.jobs.back().request.visit);
+  EXPECT_TRUE(loop.planner.jobs.back().request.holds);
   EXPECT_LT(stop.x(), 8.0);
   loop.run(1.0);
   EXPECT_LT((loop.last().position - stop).norm(), 0.05);

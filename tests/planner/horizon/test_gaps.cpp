@@ -213,17 +213,21 @@ TEST(HorizonPlanner, WhoWaitsForATakenTargetIsNotStuckAndMakesRoom) {
   for (std::size_t i = 0; i < same.size(); ++i) EXPECT_EQ(same[i].position, usual[i].position) << i;
 }
 
-TEST(StaysTaken, WhereSomethingIsThroughoutAndNotWhereItLeaves) {
+TEST(Taken, ThroughoutAtTimesOrNever) {
   const base::HorizonSettings settings;
   base::Track occupant;
   occupant.radius = 0.5;
   occupant.position = {11, -2.8, 1.5};
   std::vector<base::Track> tracks{occupant};
   const PathRequest r = before_the_wall(tracks);
-  EXPECT_TRUE(stays_taken(r, occupant.position, settings));
-  EXPECT_FALSE(stays_taken(r, occupant.position + Vec3(0.51 + r.vehicle.radius, 0, 0), settings));
-  tracks.front().velocity = {0, 0.2, 0};
-  EXPECT_FALSE(stays_taken(r, occupant.position, settings));  // free after 5 s
+  const Vec3 beside = occupant.position + Vec3(0.51 + r.vehicle.radius, 0, 0);
+  EXPECT_EQ(taken(r, occupant.position, 0.0, settings), Taken::kThroughout);
+  EXPECT_EQ(taken(r, beside, 0.0, settings), Taken::kNever);
+  EXPECT_EQ(taken(r, beside, 0.1, settings), Taken::kThroughout);
+  tracks.front().velocity = {0, 0.2, 0};  // it leaves after 5 s
+  EXPECT_EQ(taken(r, occupant.position, 0.0, settings), Taken::kAtTimes);
+  tracks.front().position.y() -= 2.1;  // it comes after 6.5 s
+  EXPECT_EQ(taken(r, occupant.position, 0.0, settings), Taken::kNever);
 }
 
 }  // namespace

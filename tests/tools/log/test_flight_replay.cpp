@@ -313,6 +313,14 @@ TEST(FlightReplay, PlansOfAVehicleThatIsStuckAreRepeated) {
   expect_flag_decides("stuck", std::move(next));
 }
 
+TEST(FlightReplay, PlansOfAVehicleThatHoldsAreRepeated) {
+  bridge::companion::PlanJob next = job(0, {sphere(1, {2, 6, 2.3}, {0, -3, 0}, 0.8)});
+  next.request.target = {2, 0, 2.3};
+  next.request.velocity.setZero();
+  next.request.holds = true;
+  expect_flag_decides("holds", std::move(next));
+}
+
 // What comes across the target passes after a visit.
 TEST(FlightReplay, PlansOfAVisitAreRepeated) {
   bridge::companion::PlanJob next = job(0, {sphere(1, {2, 15, 2.3}, {0, -3, 0}, 0.8)});
