@@ -90,8 +90,7 @@ std::optional<Vec3> Retreat::choose(double now, const planner::horizon::PathRequ
     return prediction::contact_risk(path, predictions, laws, radius, until,
                                     {planner::base::HorizonSettings::kReaction, evasion});
   };
-  const planner::base::HorizonSettings hardest = problem_.settings().for_emergencies();
-  const double evasion = kEvading * hardest.planned_acceleration(request.vehicle.max_acceleration);
+  const double evasion = kEvading * problem_.settings().emergency_acceleration(request.vehicle.max_acceleration);
   risk_ = risk_of(flown, kLookedAhead, evasion);
   entry_risk_ = 0.0;
   if (!begun_) {

@@ -152,6 +152,10 @@ struct HorizonSettings {
   [[nodiscard]] double planned_acceleration(double max_acceleration) const {
     return acceleration_share * std::min(max_acceleration, acceleration_limit);
   }
+  /// The same in emergencies.
+  [[nodiscard]] double emergency_acceleration(double max_acceleration) const {
+    return for_emergencies().planned_acceleration(max_acceleration);
+  }
 };
 
 }  // namespace jink::planner::base

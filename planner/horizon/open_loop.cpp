@@ -160,7 +160,7 @@ void pull_tight(const OpenLoopRequest& request, const base::HorizonSettings& set
   const std::vector<base::Track> tracks = tracks_along(plan.path, request, kNear);
   from.tracks = tracks;
   const double acceleration = settings.planned_acceleration(from.vehicle.max_acceleration);
-  const double hardest = settings.for_emergencies().planned_acceleration(from.vehicle.max_acceleration);
+  const double hardest = settings.emergency_acceleration(from.vehicle.max_acceleration);
   const double time_limit = std::max(request.time_limit, plan.path.back().t);
   const double clearance = plan.status == verify::PlanStatus::kReaches
                                ? std::min(from.margin, plan.verification.min_clearance)

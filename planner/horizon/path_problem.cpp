@@ -157,7 +157,7 @@ void PathProblem::change_offsets() {
 // What changes its velocity at once gains that much on the vehicle for as long as it takes to react, and less from then
 // on, until the vehicle that evades is as fast.
 Clearance PathProblem::clearance() const {
-  const double evading = settings_.for_emergencies().planned_acceleration(request_.vehicle.max_acceleration);
+  const double evading = settings_.emergency_acceleration(request_.vehicle.max_acceleration);
   const double gains_for = base::HorizonSettings::kReaction + 0.5 * request_.sudden_change / evading;  // s
   return {request_.vehicle.radius + request_.margin,
           settings_.sigma_factor,

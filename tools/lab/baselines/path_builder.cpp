@@ -85,7 +85,7 @@ double normal_acceleration(const planner::horizon::PathRequest& request,
 
 double hardest_acceleration(const planner::horizon::PathRequest& request,
                             const planner::base::HorizonSettings& settings) {
-  return settings.for_emergencies().planned_acceleration(request.vehicle.max_acceleration);
+  return settings.emergency_acceleration(request.vehicle.max_acceleration);
 }
 
 }  // namespace jink::tools::lab::baselines
