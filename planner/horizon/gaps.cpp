@@ -111,11 +111,12 @@ std::vector<Gap> find_gaps(const PathRequest& request, const geometry::PathFrame
 
 Taken taken(const PathRequest& request, const Vec3& place, double clearance, const base::HorizonSettings& settings) {
   const geometry::PathFrame frame(request.position, place);
-  const int times = 2 * settings.waypoints + 1;
-  int count = 0;
-  for (int k = 0; k < times; ++k)
-    count += lacking(blockers(request, frame, place, 0.5 * k * settings.leg(), clearance), place) > 0.0 ? 1 : 0;
-  return count == 0 ? Taken::kNever : count == times ? Taken::kThroughout : Taken::kAtTimes;
+  const auto is_taken = [&](double t) { return lacking(blockers(request, frame, place, t, clearance), place) > 0.0; };
+  const bool now = is_taken(0.0);
+  for (int k = 1; k <= 2 * settings.waypoints; ++k) {
+    if (is_taken(0.5 * k * settings.leg()) != now) return Taken::kAtTimes;
+  }
+  return now ? Taken::kThroughout : Taken::kNever;
 }
 
 Vec3 beside(const base::TimedPath& unobstructed, const geometry::PathFrame& frame, const Encounter& e) {
