@@ -11,15 +11,15 @@ namespace {
 
 using bridge::supervisor::Phase;
 
-constexpr int kStepsPerTurn = 5;     // 20 ms
-constexpr double kTracksHz = 10.0;   // what learns from tracks is most of the cost
-constexpr double kReady = 6.0;       // s, from when on the autopilot may be armed
-constexpr double kPlansFrom = 12.6;  // s, about when plans are flown
-constexpr double kAtSpeed = 1.0;     // s later, when it flies at its cruise speed
+constexpr int kStepsPerTurn = 5;    // 20 ms
+constexpr double kTracksHz = 10.0;  // what learns from tracks is most of the cost
+constexpr double kReady = 6.0;      // s, from when on the autopilot may be armed
 // s, from the climb's beginning, from which the time limit counts.
-constexpr double kClimb = 5.6, kToTarget = 12.4, kToLanding = 13.8;
-constexpr double kLeast = 0.01;      // s, of a time limit
-constexpr double kPlanTakes = 0.02;  // s
+constexpr double kClimb = 5.6, kToTarget = kClimb + 6.8, kToLanding = kClimb + 8.2;
+constexpr double kPlansFrom = 7.0 + kClimb;  // s, about when plans are flown
+constexpr double kAtSpeed = 1.0;             // s later, when it flies at its cruise speed
+constexpr double kLeast = 0.01;              // s, of a time limit
+constexpr double kPlanTakes = 0.02;          // s
 
 config::Mission mission_of(const Happening& what, const Cell& cell) {
   config::Mission m;
