@@ -164,12 +164,7 @@ struct ClearanceLanes {
       const double qx = px + s * dx;
       const double qy = py + s * dy;
       const double qz = pz + s * dz;
-      const double distance = std::sqrt(qx * qx + qy * qy + qz * qz);
-      const double mx = to.x[i] - from.x[i];
-      const double my = to.y[i] - from.y[i];
-      const double mz = to.z[i] - from.z[i];
-      const double nearer = -(qx * mx + qy * my + qz * mz) / (distance + 1e-300);
-      weights.add(distance, nearer, dip[i], violation[i]);
+      weights.add(std::sqrt(qx * qx + qy * qy + qz * qz), dip[i], violation[i]);
     }
   }
 
@@ -207,19 +202,17 @@ struct ClearanceLanes {
 
   /// What a distance from an obstacle's centre counts.
   struct Weights {
-    double hard, soft, extra, dip_weight, weight, reaction;
+    double hard, soft, extra, dip_weight, weight;
 
     [[gnu::always_inline]] Weights(const NearbyObstacle& obstacle, double weight_)
         : hard(obstacle.hard),
           soft(obstacle.soft),
           extra(soft > hard ? soft - hard : 1.0),
           dip_weight(soft > hard ? weight_ : 0.0),
-          weight(weight_),
-          reaction(obstacle.reaction) {}
+          weight(weight_) {}
 
-    /// Where the vehicle, by its own motion, comes nearer by `nearer` in the step, m.
-    [[gnu::always_inline]] void add(double distance, double nearer, double& dips, double& violations) const {
-      const double depth = (soft + reaction * (nearer > 0.0 ? nearer : 0.0) - distance) / extra;
+    [[gnu::always_inline]] void add(double distance, double& dips, double& violations) const {
+      const double depth = (soft - distance) / extra;
       const double positive = depth > 0.0 ? depth : 0.0;
       const double bounded = positive < 1.0 ? positive : 1.0;
       dips += dip_weight * (bounded * bounded);
@@ -242,18 +235,8 @@ struct ClearanceLanes {
     solid.from.to_own(a, a);
     solid.to.to_own(b, b);
     solid.from.least_distances<kPlaces>(a, b, least);
-    Lanes<kPart> nearer{0.0};
-    if (obstacle.reaction > 0.0) {
-      Lanes<kPart> before, after;
-      a.copy(from, first);
-      solid.to.to_own(a, a);
-      solid.to.distances(a, before);
-      solid.to.distances(b, after);
-      for (std::size_t i = 0; i < kPart; ++i) nearer[i] = before[i] - after[i];
-    }
     const Weights weights(obstacle, weight);
-    for (std::size_t i = 0; i < kPart; ++i)
-      weights.add(solid.radius + least[i], nearer[i], dip[first + i], violation[first + i]);
+    for (std::size_t i = 0; i < kPart; ++i) weights.add(solid.radius + least[i], dip[first + i], violation[first + i]);
   }
 };
 

@@ -48,18 +48,14 @@ class TrackMotion {
     const double moved = track_.velocity_sigma * ahead;
     const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
     const double unsure = clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead;
-    return std::max(is_noisy() ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
+    return std::max(sigma > 0.0 ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
   }
   /// A bound of uncertainty().
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) {
     return std::max(clearance.evasion, clearance.limit);
   }
-  /// For how long the vehicle goes on as it does where this moves otherwise, s.
-  [[nodiscard]] double reaction(const Clearance& clearance) const { return is_noisy() ? clearance.reaction : 0.0; }
 
  private:
-  [[nodiscard]] bool is_noisy() const { return track_.position_sigma > 0.0 || track_.velocity_sigma > 0.0; }
-
   const base::Track& track_;
   double trust_;
 };
@@ -98,7 +94,6 @@ class PathMotion {
                     clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
   }
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) { return clearance.limit; }
-  [[nodiscard]] static double reaction(const Clearance& /*clearance*/) { return 0.0; }
 
  private:
   const geometry::KnownPath& path_;
@@ -185,9 +180,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
-  const double reaction = motion.reaction(clearance);
-  const double comes = reaction * fastest;
-  const double room = motion.most_uncertainty(clearance) + comes;
+  const double room = motion.most_uncertainty(clearance);
   const bool is_solid = motion.body().solid != nullptr;
   const double passed = (speed + fastest) * step;
   const double slack = kSlack + (is_solid ? turning_slack(std::abs(motion.body().yaw_rate) * step, passed,
@@ -204,7 +197,6 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
-    obstacle.reaction = reaction / step;
     for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
       const double end = static_cast<double>(n + 1) * step;
       obstacle.from = obstacle.to;
@@ -217,11 +209,10 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       if (distance >= most * most) continue;
       obstacle.hard = bent;
       obstacle.soft = bent + motion.uncertainty(clearance, end);
-      obstacle.near = obstacle.soft + comes + moved + slack;
+      obstacle.near = obstacle.soft + moved + slack;
       if (distance >= obstacle.near * obstacle.near) continue;
       if (is_solid) {
-        const NearbySolid placed =
-            solid_during(motion, obstacle, step, n, obstacle.soft + comes - motion.radius() + slack);
+        const NearbySolid placed = solid_during(motion, obstacle, step, n, obstacle.soft - motion.radius() + slack);
         if (geometry::distance(where[n], placed.keep_out) > 0.0) continue;
         obstacle.solid = static_cast<int>(solids_.size());
         solids_.push_back(placed);

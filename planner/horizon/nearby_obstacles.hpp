@@ -22,20 +22,18 @@ struct Clearance {
   double limit = 0.0;               ///< the most that uncertainty may ask for
   double acceleration_trust = base::kInfinity;  ///< as in predict_position
   double hard_beside_standing = 0.0;            ///< `hard` of what stands
-  double reaction = 0.0;  ///< s, for which a vehicle goes on as it does where a noisy track moves otherwise
 };
 
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
 struct NearbyObstacle {
-  Vec3 from,              ///< its centre when the step begins, ENU, m
-      to;                 ///< its centre when the step ends
-  Vec3 middle;            ///< halfway
-  double hard = 0.0,      ///< distance of the centres that is asked for, never less
-      soft = 0.0;         ///< distance of the centres that is asked for, better not less
-  double near = 0.0;      ///< from the middle: farther away, both are kept throughout the step
-  double reaction = 0.0;  ///< steps for which the vehicle's own coming nearer counts in advance
-  int solid = -1;         ///< which of NearbyObstacles::solid() it is, none: a sphere
+  Vec3 from,          ///< its centre when the step begins, ENU, m
+      to;             ///< its centre when the step ends
+  Vec3 middle;        ///< halfway
+  double hard = 0.0,  ///< distance of the centres that is asked for, never less
+      soft = 0.0;     ///< distance of the centres that is asked for, better not less
+  double near = 0.0;  ///< from the middle: farther away, the soft distance is kept throughout the step
+  int solid = -1;     ///< which of NearbyObstacles::solid() it is, none: a sphere
 };
 
 /// A solid during one step. Of its distances `radius` is taken off those of NearbyObstacle, which are from the centre.

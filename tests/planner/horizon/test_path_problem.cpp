@@ -405,9 +405,8 @@ void add_to_cost(double distance, double hard, double extra, double weight, opti
   }
 }
 
-/// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition, where
-/// the vehicle comes nearer by `nearer` by its own motion.
-void add_to_cost(double distance, double nearer, const base::Track& track, double t, const base::HorizonSettings& s,
+/// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition.
+void add_to_cost(double distance, const base::Track& track, double t, const base::HorizonSettings& s,
                  const PathRequest& r, optimizer::Cost& cost) {
   const double weight = s.step / (0.5 + t);
   const double ahead = t + s.step + track.age;
@@ -418,13 +417,6 @@ void add_to_cost(double distance, double nearer, const base::Track& track, doubl
   const double evasion = sigma > 0.0 ? r.sudden_change * until : 0.0;
   const double extra = std::max(evasion, std::min(s.clearance_limit, unsure));
   add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost);
-  if (sigma == 0.0 || r.sudden_change == 0.0 || nearer <= 0.0) return;
-  // As far as it gets in 0.45 s, it counts as nearer.
-  optimizer::Cost later;
-  add_to_cost(distance - 0.45 / s.step * nearer, r.vehicle.radius + r.margin, extra, weight, later);
-  optimizer::Cost now;
-  add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, now);
-  cost.f[2] += later.f[2] - now.f[2];
 }
 
 /// f3 and violation by their definition, from every track, nothing left out, but for leaving the volume.
@@ -439,11 +431,7 @@ optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSe
       const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
       const Vec3 d = geometry::predict_position(track, (n + 1) * s.step, r.acceleration_trust);
       const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d)) - track.radius;
-      const Vec3 before = from - c;
-      const Vec3 change = to - d - before;
-      const double when = std::clamp(-before.dot(change) / std::max(change.squaredNorm(), 1e-300), 0.0, 1.0);
-      const Vec3 apart = before + when * change;
-      add_to_cost(distance, -apart.normalized().dot(to - from), track, t, s, r, cost);
+      add_to_cost(distance, track, t, s, r, cost);
     }
     for (const base::Track& track : r.standing) {
       const double distance =
@@ -546,11 +534,7 @@ optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSett
         const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
         distance = std::min(distance, PlacedSolid(track.body, c, t).distance(base::sample(path, t).position));
       }
-      const PlacedSolid then(track.body, geometry::predict_position(track, begin + s.step, r.acceleration_trust),
-                             begin + s.step);
-      const double nearer = then.distance(base::sample(path, begin).position) -
-                            then.distance(base::sample(path, begin + s.step).position);
-      add_to_cost(distance, nearer, track, begin, s, r, cost);
+      add_to_cost(distance, track, begin, s, r, cost);
     }
     for (const base::Track& track : r.standing) {
       const PlacedSolid solid(track.body, track.position, 0.0);
