@@ -108,12 +108,14 @@ struct CostLanes {
 
   /// From an obstacle in step j of the stretch.
   [[gnu::always_inline]] void keep_away(const NearbyObstacle& obstacle, std::size_t j, double weight) {
-    if (!stretch.may_meet(obstacle, j)) return;
+    Lanes<kLanes> near;
+    stretch.find_near(obstacle, j, near);
+    if (smallest(near) > 0.0) return;
     if (obstacle.solid >= 0) {
       clearance.add_solid(obstacle, obstacles.solid(obstacle), stretch.places[j], stretch.places[j + 1],
                           stretch.moved[j], weight);
     } else {
-      clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], weight);
+      clearance.add_sphere(obstacle, stretch.places[j], stretch.places[j + 1], near, weight);
     }
   }
 

@@ -75,6 +75,14 @@ template <std::size_t kLanes>
   }
 }
 
+/// The smallest of kPart lanes, from `first` on.
+template <std::size_t kPart, std::size_t kLanes>
+[[gnu::always_inline]] inline double smallest_of(const Lanes<kLanes>& v, std::size_t first) {
+  Lanes<kPart> part;
+  for (std::size_t i = 0; i < kPart; ++i) part[i] = v[first + i];
+  return smallest(part);
+}
+
 /// The largest of all lanes.
 template <std::size_t kLanes>
 [[gnu::always_inline]] inline double largest(const Lanes<kLanes>& v) {

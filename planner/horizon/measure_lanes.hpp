@@ -144,13 +144,88 @@ struct ClearanceLanes {
     }
   }
 
-  /// The swept test of geometry.hpp in every lane.
+  /// The swept test of geometry.hpp in those lanes that are `near`, below 0.
   [[gnu::always_inline]] void add_sphere(const NearbyObstacle& obstacle, const PointLanes<kLanes>& from,
-                                         const PointLanes<kLanes>& to, double weight) {
+                                         const PointLanes<kLanes>& to, const Lanes<kLanes>& near, double weight) {
+    const Weights weights(obstacle, weight);
+    for (std::size_t first = 0; first < kLanes; first += kPart) {
+      if (smallest_of<kPart>(near, first) < 0.0) add_near_sphere(obstacle, from, to, first, weights);
+    }
+  }
+
+  /// The same for a solid in a step over `moved`, for those lanes alone that may come near.
+  [[gnu::always_inline]] void add_solid(const NearbyObstacle& obstacle, const NearbySolid& solid,
+                                        const PointLanes<kLanes>& from, const PointLanes<kLanes>& to,
+                                        const Lanes<kLanes>& moved, double weight) {
+    PointLanes<kLanes> own;
+    Lanes<kLanes> before, after, nearer, near;
+    solid.middle.to_own(from, own);
+    solid.middle.distances(own, before);
+    solid.middle.to_own(to, own);
+    solid.middle.distances(own, after);
+    // No place between is nearer than that of who flew straight at it and straight away.
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      nearer[i] = before[i] - after[i];
+      const double least = 0.5 * (before[i] + after[i] - moved[i]);
+      near[i] = least < solid.near + obstacle.advance(nearer[i]) ? -1.0 : 1.0;
+    }
+    const Weights weights(obstacle, weight);
+    for (std::size_t first = 0; first < kLanes; first += kPart) {
+      if (smallest_of<kPart>(near, first) < 0.0) add_near_solid(solid, from, to, nearer, first, weights);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kPart = kLanes < 4 ? kLanes : 4;  ///< lanes that are left out together
+
+  /// Of lane i, m².
+  [[gnu::always_inline]] static double squared_outside(const base::Box& box, const PointLanes<kLanes>& at,
+                                                       std::size_t i) {
+    const double x = PlainBox::outside(box.min.x(), box.max.x(), at.x[i]);
+    const double y = PlainBox::outside(box.min.y(), box.max.y(), at.y[i]);
+    const double z = PlainBox::outside(box.min.z(), box.max.z(), at.z[i]);
+    return x * x + y * y + z * z;
+  }
+
+  /// Of lane i, m.
+  [[gnu::always_inline]] static double distance_from(const Vec3& place, const PointLanes<kLanes>& at, std::size_t i) {
+    const double x = at.x[i] - place.x();
+    const double y = at.y[i] - place.y();
+    const double z = at.z[i] - place.z();
+    return std::sqrt(x * x + y * y + z * z);
+  }
+
+  /// What a distance from an obstacle's centre counts.
+  struct Weights {
+    const NearbyObstacle& obstacle;
+    double hard, soft, per_extra, dip_weight, weight;
+
+    [[gnu::always_inline]] Weights(const NearbyObstacle& obstacle_, double weight_)
+        : obstacle(obstacle_),
+          hard(obstacle.hard),
+          soft(obstacle.soft),
+          per_extra(soft > hard ? 1.0 / (soft - hard) : 1.0),
+          dip_weight(soft > hard ? weight_ : 0.0),
+          weight(weight_) {}
+
+    /// For who comes nearer by `nearer` in the step by its own motion, m.
+    [[gnu::always_inline]] void add(double distance, double nearer, double& dips, double& violations) const {
+      const double depth = (soft + obstacle.advance(nearer) - distance) * per_extra;
+      const double positive = depth > 0.0 ? depth : 0.0;
+      const double bounded = positive < 1.0 ? positive : 1.0;
+      dips += dip_weight * (bounded * bounded);
+      const double deep = hard - distance;
+      violations += weight * (deep > 0.0 ? deep : 0.0);
+    }
+  };
+
+  /// Of add_sphere(), kPart lanes from `first` on.
+  [[gnu::always_inline]] void add_near_sphere(const NearbyObstacle& obstacle, const PointLanes<kLanes>& from,
+                                              const PointLanes<kLanes>& to, std::size_t first, const Weights& weights) {
     const Vec3 c = obstacle.from;
     const Vec3 d = obstacle.to;
-    const Weights weights(obstacle, weight);
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    const Vec3 m = obstacle.middle;
+    for (std::size_t i = first; i < first + kPart; ++i) {
       const double px = from.x[i] - c.x();
       const double py = from.y[i] - c.y();
       const double pz = from.z[i] - c.z();
@@ -164,69 +239,16 @@ struct ClearanceLanes {
       const double qx = px + s * dx;
       const double qy = py + s * dy;
       const double qz = pz + s * dz;
-      weights.add(std::sqrt(qx * qx + qy * qy + qz * qz), dip[i], violation[i]);
+      const double nearer = distance_from(m, from, i) - distance_from(m, to, i);
+      weights.add(std::sqrt(qx * qx + qy * qy + qz * qz), nearer, dip[i], violation[i]);
     }
   }
 
-  /// The same for a solid in a step over `moved`, for those lanes alone that may come near.
-  [[gnu::always_inline]] void add_solid(const NearbyObstacle& obstacle, const NearbySolid& solid,
-                                        const PointLanes<kLanes>& from, const PointLanes<kLanes>& to,
-                                        const Lanes<kLanes>& moved, double weight) {
-    constexpr std::size_t kPart = kLanes < 4 ? kLanes : 4;
-    PointLanes<kLanes> middle;
-    Lanes<kLanes> limit, sign;
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      middle.x[i] = 0.5 * (from.x[i] + to.x[i]);
-      middle.y[i] = 0.5 * (from.y[i] + to.y[i]);
-      middle.z[i] = 0.5 * (from.z[i] + to.z[i]);
-      limit[i] = solid.near + 0.5 * moved[i];
-    }
-    solid.middle.to_own(middle, middle);
-    solid.middle.within(middle, limit, sign);
-    for (std::size_t first = 0; first < kLanes; first += kPart) {
-      Lanes<kPart> part;
-      for (std::size_t i = 0; i < kPart; ++i) part[i] = sign[first + i];
-      if (smallest(part) < 0.0) add_near<kPart>(obstacle, solid, from, to, first, weight);
-    }
-  }
-
- private:
-  /// Of lane i, m².
-  [[gnu::always_inline]] static double squared_outside(const base::Box& box, const PointLanes<kLanes>& at,
-                                                       std::size_t i) {
-    const double x = PlainBox::outside(box.min.x(), box.max.x(), at.x[i]);
-    const double y = PlainBox::outside(box.min.y(), box.max.y(), at.y[i]);
-    const double z = PlainBox::outside(box.min.z(), box.max.z(), at.z[i]);
-    return x * x + y * y + z * z;
-  }
-
-  /// What a distance from an obstacle's centre counts.
-  struct Weights {
-    double hard, soft, extra, dip_weight, weight;
-
-    [[gnu::always_inline]] Weights(const NearbyObstacle& obstacle, double weight_)
-        : hard(obstacle.hard),
-          soft(obstacle.soft),
-          extra(soft > hard ? soft - hard : 1.0),
-          dip_weight(soft > hard ? weight_ : 0.0),
-          weight(weight_) {}
-
-    [[gnu::always_inline]] void add(double distance, double& dips, double& violations) const {
-      const double depth = (soft - distance) / extra;
-      const double positive = depth > 0.0 ? depth : 0.0;
-      const double bounded = positive < 1.0 ? positive : 1.0;
-      dips += dip_weight * (bounded * bounded);
-      const double deep = hard - distance;
-      violations += weight * (deep > 0.0 ? deep : 0.0);
-    }
-  };
-
-  /// Some lanes, from `first` on, of add_solid()'s: at some places of the step, between two of which, in a step of a
-  /// metre, the distance from an edge that is kept 0.65 m away is less by 0.01 m.
-  template <std::size_t kPart>
-  [[gnu::always_inline]] void add_near(const NearbyObstacle& obstacle, const NearbySolid& solid,
-                                       const PointLanes<kLanes>& from, const PointLanes<kLanes>& to, std::size_t first,
-                                       double weight) {
+  /// Of add_solid(): at some places of the step, between two of which, in a step of a metre, the distance from an edge
+  /// that is kept 0.65 m away is less by 0.01 m.
+  [[gnu::always_inline]] void add_near_solid(const NearbySolid& solid, const PointLanes<kLanes>& from,
+                                             const PointLanes<kLanes>& to, const Lanes<kLanes>& nearer,
+                                             std::size_t first, const Weights& weights) {
     constexpr std::size_t kPlaces = 3;
     PointLanes<kPart> a, b;
     Lanes<kPart> least;
@@ -234,9 +256,9 @@ struct ClearanceLanes {
     b.copy(to, first);
     solid.from.to_own(a, a);
     solid.to.to_own(b, b);
-    solid.from.least_distances<kPlaces>(a, b, least);
-    const Weights weights(obstacle, weight);
-    for (std::size_t i = 0; i < kPart; ++i) weights.add(solid.radius + least[i], dip[first + i], violation[first + i]);
+    solid.from.template least_distances<kPlaces>(a, b, least);
+    for (std::size_t i = 0; i < kPart; ++i)
+      weights.add(solid.radius + least[i], nearer[first + i], dip[first + i], violation[first + i]);
   }
 };
 

@@ -48,14 +48,18 @@ class TrackMotion {
     const double moved = track_.velocity_sigma * ahead;
     const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
     const double unsure = clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead;
-    return std::max(sigma > 0.0 ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
+    return std::max(is_noisy() ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
   }
   /// A bound of uncertainty().
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) {
     return std::max(clearance.evasion, clearance.limit);
   }
+  /// For how long the vehicle goes on as it does where this moves otherwise, s.
+  [[nodiscard]] double reaction(const Clearance& clearance) const { return is_noisy() ? clearance.reaction : 0.0; }
 
  private:
+  [[nodiscard]] bool is_noisy() const { return track_.position_sigma > 0.0 || track_.velocity_sigma > 0.0; }
+
   const base::Track& track_;
   double trust_;
 };
@@ -94,6 +98,7 @@ class PathMotion {
                     clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
   }
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) { return clearance.limit; }
+  [[nodiscard]] static double reaction(const Clearance& /*clearance*/) { return 0.0; }
 
  private:
   const geometry::KnownPath& path_;
@@ -109,7 +114,8 @@ double turning_slack(double turn, double moved, double size) {
   return q < 0.5 ? (size * q + 0.25 * turn * moved) / (1.0 - q) : base::kInfinity;
 }
 
-/// The solid of what moves so, where it is during step n, to be looked at by who is within `kept` of it.
+/// The solid of what moves so, where it is during step n, to be looked at by who is within `kept` of it, or comes
+/// nearer.
 template <typename Motion>
 NearbySolid solid_during(const Motion& motion, const NearbyObstacle& obstacle, double step, std::size_t n,
                          double kept) {
@@ -130,7 +136,7 @@ NearbySolid solid_during(const Motion& motion, const NearbyObstacle& obstacle, d
           {motion.body(), obstacle.to, end},
           motion.radius(),
           kept + strays,
-          geometry::grown(united(before, geometry::box_around(there)), kept)};
+          geometry::grown(united(before, geometry::box_around(there)), kept + obstacle.most_advance)};
 }
 
 }  // namespace
@@ -169,7 +175,8 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
     x_[i] = met_[i].middle.x();
     y_[i] = met_[i].middle.y();
     z_[i] = met_[i].middle.z();
-    near_squared_[i] = met_[i].near * met_[i].near;
+    const double near = met_[i].near + met_[i].most_advance;
+    near_squared_[i] = near * near;
   }
 }
 
@@ -180,7 +187,9 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
-  const double room = motion.most_uncertainty(clearance);
+  const double reaction = motion.reaction(clearance);
+  const double advance = std::min(clearance.limit, reaction * fastest);
+  const double room = motion.most_uncertainty(clearance) + advance;
   const bool is_solid = motion.body().solid != nullptr;
   const double passed = (speed + fastest) * step;
   const double slack = kSlack + (is_solid ? turning_slack(std::abs(motion.body().yaw_rate) * step, passed,
@@ -197,6 +206,8 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
+    obstacle.reaction = reaction / step;
+    obstacle.most_advance = advance;
     for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
       const double end = static_cast<double>(n + 1) * step;
       obstacle.from = obstacle.to;
@@ -210,7 +221,8 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
       obstacle.hard = bent;
       obstacle.soft = bent + motion.uncertainty(clearance, end);
       obstacle.near = obstacle.soft + moved + slack;
-      if (distance >= obstacle.near * obstacle.near) continue;
+      const double near = obstacle.near + advance;
+      if (distance >= near * near) continue;
       if (is_solid) {
         const NearbySolid placed = solid_during(motion, obstacle, step, n, obstacle.soft - motion.radius() + slack);
         if (geometry::distance(where[n], placed.keep_out) > 0.0) continue;

@@ -22,18 +22,27 @@ struct Clearance {
   double limit = 0.0;               ///< the most that uncertainty may ask for
   double acceleration_trust = base::kInfinity;  ///< as in predict_position
   double hard_beside_standing = 0.0;            ///< `hard` of what stands
+  double reaction = 0.0;  ///< s, for which a vehicle goes on as it does where a noisy track moves otherwise
 };
 
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by
 /// as much as it strays from even motion.
 struct NearbyObstacle {
-  Vec3 from,          ///< its centre when the step begins, ENU, m
-      to;             ///< its centre when the step ends
-  Vec3 middle;        ///< halfway
-  double hard = 0.0,  ///< distance of the centres that is asked for, never less
-      soft = 0.0;     ///< distance of the centres that is asked for, better not less
-  double near = 0.0;  ///< from the middle: farther away, the soft distance is kept throughout the step
-  int solid = -1;     ///< which of NearbyObstacles::solid() it is, none: a sphere
+  Vec3 from,                  ///< its centre when the step begins, ENU, m
+      to;                     ///< its centre when the step ends
+  Vec3 middle;                ///< halfway
+  double hard = 0.0,          ///< distance of the centres that is asked for, never less
+      soft = 0.0;             ///< distance of the centres that is asked for, better not less
+  double near = 0.0;          ///< from the middle: farther away, both are kept throughout the step
+  double reaction = 0.0;      ///< steps for which the vehicle's own coming nearer counts in advance,
+  double most_advance = 0.0;  ///< and by how much at most, m
+  int solid = -1;             ///< which of NearbyObstacles::solid() it is, none: a sphere
+
+  /// By how much nearer it counts for who comes nearer by `nearer` in the step by its own motion, m.
+  [[gnu::always_inline]] [[nodiscard]] double advance(double nearer) const {
+    const double ahead = reaction * (nearer > 0.0 ? nearer : 0.0);
+    return ahead < most_advance ? ahead : most_advance;
+  }
 };
 
 /// A solid during one step. Of its distances `radius` is taken off those of NearbyObstacle, which are from the centre.
@@ -51,7 +60,7 @@ struct NearbyMiddles {
   const double* x;             ///< east, m; each to be read in whole groups of NearbyObstacles::kAtOnce
   const double* y;             ///< north, m
   const double* z;             ///< up, m
-  const double* near_squared;  ///< NearbyObstacle::near², m²
+  const double* near_squared;  ///< (NearbyObstacle::near + most_advance)², m²
 };
 
 /// For each step the obstacles that come within their soft distance of the region in which the vehicle then is. Not

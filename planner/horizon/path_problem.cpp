@@ -165,7 +165,8 @@ Clearance PathProblem::clearance() const {
           request_.sudden_change * std::min(gains_for, horizon()),
           settings_.clearance_limit,
           request_.acceleration_trust,
-          request_.vehicle.radius + request_.margin_beside_standing()};
+          request_.vehicle.radius + request_.margin_beside_standing(),
+          request_.sudden_change > 0.0 ? base::HorizonSettings::kReaction : 0.0};
 }
 
 // Where any motion can be. Each step moves the velocity along a straight line towards one that keeps the limits, by at

@@ -83,15 +83,6 @@ class PlacedSolid {
                              : least_of<kPlaces>(Prism<false>(*solid_), a, b, least);
   }
 
-  /// Below 0 for each lane whose place, in the solid's own axes, has a distance() of less than its limit, m, above 0.
-  template <std::size_t kLanes>
-  [[gnu::always_inline]] void within(const PointLanes<kLanes>& own, const Lanes<kLanes>& limit,
-                                     Lanes<kLanes>& sign) const {
-    solid_->is_hull()        ? within_of(Slabs(*solid_), own, limit, sign)
-    : solid_->corner() > 0.0 ? within_of(Prism<true>(*solid_), own, limit, sign)
-                             : within_of(Prism<false>(*solid_), own, limit, sign);
-  }
-
  private:
   // Shapes measure without a branch, for loops over places: the squared distance outside, and what is at most 0 inside.
   // The distance is the root of the one and the other; of several places, that of the least of both.
@@ -188,17 +179,6 @@ class PlacedSolid {
         depth[i] = depth[n * kLanes + i] < depth[i] ? depth[n * kLanes + i] : depth[i];
     }
     for (std::size_t i = 0; i < kLanes; ++i) least[i] = std::sqrt(squared[i]) + depth[i] - shape.rounding;
-  }
-
-  template <std::size_t kLanes, typename Shape>
-  [[gnu::always_inline]] static void within_of(const Shape& shape, const PointLanes<kLanes>& own,
-                                               const Lanes<kLanes>& limit, Lanes<kLanes>& sign) {
-    Lanes<kLanes> squared, depth;
-    shape.measure(own, squared, depth);
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const double reach = limit[i] + shape.rounding;
-      sign[i] = squared[i] < reach * reach ? -1.0 : 1.0;
-    }
   }
 
   const base::Solid* solid_ = nullptr;

@@ -85,23 +85,21 @@ struct StretchLanes {
     return {smallest(low.x), smallest(low.y), smallest(low.z), largest(high.x), largest(high.y), largest(high.z)};
   }
 
-  /// False only where every lane keeps the soft distance in step j. Relative motion is straight, so during the step
-  /// the distance is not below that of the middles by more than half of both ways.
-  [[gnu::always_inline]] [[nodiscard]] bool may_meet(const NearbyObstacle& obstacle, std::size_t j) const {
+  /// Below 0 for each lane that may not keep the soft distance in step j, with what counts in advance. Relative motion
+  /// is straight, so during the step the distance is not below that of the middles by more than half of both ways.
+  [[gnu::always_inline]] void find_near(const NearbyObstacle& obstacle, std::size_t j, Lanes<kLanes>& sign) const {
     const PointLanes<kLanes>& from = places[j];
     const PointLanes<kLanes>& to = places[j + 1];
     const Lanes<kLanes>& way = moved[j];
     const Vec3 middle = obstacle.middle;
     const double near = obstacle.near;
-    Lanes<kLanes> sign;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double x = 0.5 * (from.x[i] + to.x[i]) - middle.x();
       const double y = 0.5 * (from.y[i] + to.y[i]) - middle.y();
       const double z = 0.5 * (from.z[i] + to.z[i]) - middle.z();
-      const double limit = near + 0.5 * way[i];
+      const double limit = near + 0.5 * way[i] + obstacle.advance(way[i]);
       sign[i] = x * x + y * y + z * z < limit * limit ? -1.0 : 1.0;
     }
-    return smallest(sign) < 0.0;
   }
 };
 

@@ -396,17 +396,20 @@ TEST(PathProblem, WaypointsStayInTheVolumeAndLeavingItIsAViolation) {
   }
 }
 
-/// What it costs to come as near as `distance` where at least `hard` is asked for, and `extra` more is better.
-void add_to_cost(double distance, double hard, double extra, double weight, optimizer::Cost& cost) {
+/// What it costs to come as near as `distance` where at least `hard` is asked for, and `extra` more is better, from
+/// `advance` farther off on.
+void add_to_cost(double distance, double hard, double extra, double weight, optimizer::Cost& cost,
+                 double advance = 0.0) {
   cost.violation += weight * std::max(0.0, hard - distance);
   if (extra > 0.0) {
-    const double depth = std::clamp((hard + extra - distance) / extra, 0.0, 1.0);
+    const double depth = std::clamp((hard + extra + advance - distance) / extra, 0.0, 1.0);
     cost.f[2] += weight * depth * depth;
   }
 }
 
-/// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition.
-void add_to_cost(double distance, const base::Track& track, double t, const base::HorizonSettings& s,
+/// What it costs to come as near as `distance` to a track's surface in a step from time t on, by the definition, where
+/// the vehicle comes nearer by `nearer` by its own motion.
+void add_to_cost(double distance, double nearer, const base::Track& track, double t, const base::HorizonSettings& s,
                  const PathRequest& r, optimizer::Cost& cost) {
   const double weight = s.step / (0.5 + t);
   const double ahead = t + s.step + track.age;
@@ -416,7 +419,9 @@ void add_to_cost(double distance, const base::Track& track, double t, const base
   const double until = std::min(0.45 + r.sudden_change / (2.0 * evading), s.horizon());  // s
   const double evasion = sigma > 0.0 ? r.sudden_change * until : 0.0;
   const double extra = std::max(evasion, std::min(s.clearance_limit, unsure));
-  add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost);
+  const double in_reaction = 0.45 / s.step * std::max(0.0, nearer);
+  const double advance = sigma > 0.0 && r.sudden_change > 0.0 ? std::min(s.clearance_limit, in_reaction) : 0.0;
+  add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost, advance);
 }
 
 /// f3 and violation by their definition, from every track, nothing left out, but for leaving the volume.
@@ -431,7 +436,8 @@ optimizer::Cost reference_cost(const PathProblem& problem, const base::HorizonSe
       const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
       const Vec3 d = geometry::predict_position(track, (n + 1) * s.step, r.acceleration_trust);
       const double distance = std::sqrt(geometry::swept_distance_squared(from, to, c, d)) - track.radius;
-      add_to_cost(distance, track, t, s, r, cost);
+      const Vec3 halfway = 0.5 * (c + d);
+      add_to_cost(distance, (from - halfway).norm() - (to - halfway).norm(), track, t, s, r, cost);
     }
     for (const base::Track& track : r.standing) {
       const double distance =
@@ -534,7 +540,12 @@ optimizer::Cost sampled_cost(const PathProblem& problem, const base::HorizonSett
         const Vec3 c = geometry::predict_position(track, t, r.acceleration_trust);
         distance = std::min(distance, PlacedSolid(track.body, c, t).distance(base::sample(path, t).position));
       }
-      add_to_cost(distance, track, begin, s, r, cost);
+      const Vec3 from = geometry::predict_position(track, begin, r.acceleration_trust);
+      const Vec3 to = geometry::predict_position(track, begin + s.step, r.acceleration_trust);
+      const PlacedSolid halfway(track.body, 0.5 * (from + to), begin + 0.5 * s.step);
+      const double nearer = halfway.distance(base::sample(path, begin).position) -
+                            halfway.distance(base::sample(path, begin + s.step).position);
+      add_to_cost(distance, nearer, track, begin, s, r, cost);
     }
     for (const base::Track& track : r.standing) {
       const PlacedSolid solid(track.body, track.position, 0.0);
