@@ -252,8 +252,14 @@ void Planning::demand(const vehicle::VehicleState& state, double margin, planner
   const bool in_world = mission_.tracks.sensed_from == config::SensedFrom::kWorld;
   request.vehicle = mission_.vehicle;
   request.margin = in_world ? planner::base::hypotenuse(margin, state.position_sigma) : margin;
-  request.volume = volume(request.position, request.target, request.margin, state.position_sigma);
-  request.volume_clearance = kClearSigmas * state.position_sigma;
+  const planner::base::Box inside = volume(request.margin, state.position_sigma);
+  // Where the vehicle is already, a path may begin, and it may end where it is sent.
+  const Vec3& start = request.position;
+  request.volume = {inside.min.cwiseMin(start).cwiseMin(request.target),
+                    inside.max.cwiseMax(start).cwiseMax(request.target)};
+  // Who has got out by so much comes back in.
+  const double beyond = (inside.min - start).cwiseMax(start - inside.max).maxCoeff();
+  request.volume_clearance = std::max(kClearSigmas * state.position_sigma, beyond);
   request.track_acceleration = settings_.horizon.track_acceleration;
   request.sudden_change = settings_.horizon.sudden_change;
   request.acceleration_trust = settings_.horizon.acceleration_trust;
@@ -409,16 +415,13 @@ bool Planning::climbs_free(double now, Intake& intake) const {
   });
 }
 
-planner::base::Box Planning::volume(const Vec3& start, const Vec3& target, double margin, double sigma) const {
+planner::base::Box Planning::volume(double margin, double sigma) const {
   planner::base::Box box = flight_volume(mission_);
   // The vehicle is off its path at times, and its estimate is off. Not by all of the margin: in a narrow corridor the
   // room is needed to dodge.
   const Vec3 inset = (kInset * (box.max - box.min)).cwiseMin(kInsetMargin * margin + kInsetSigmas * sigma);
   box.min += inset;
   box.max -= inset;
-  // Where the vehicle is already, a path may begin, and it may end where it is sent.
-  box.min = box.min.cwiseMin(start).cwiseMin(target);
-  box.max = box.max.cwiseMax(start).cwiseMax(target);
   return box;
 }
 

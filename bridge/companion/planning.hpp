@@ -85,7 +85,7 @@ class Planning {
   void keep_in_column(planner::horizon::PathRequest& request) const;
   /// A plan to a waypoint that leads to where the mission may not fly, as that was not seen, is left before for a stop.
   void stay_in_seen(double now, const MotionControl& motion, PlanResult& result);
-  [[nodiscard]] planner::base::Box volume(const Vec3& start, const Vec3& target, double margin, double sigma) const;
+  [[nodiscard]] planner::base::Box volume(double margin, double sigma) const;
   [[nodiscard]] bool is_seen(const planner::base::TimedPath& path) const;
   [[nodiscard]] bool lands_free(const PlanResult& result) const;
   void failed(double now, const std::exception& failure);

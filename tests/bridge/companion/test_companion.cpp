@@ -150,7 +150,11 @@ TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
   loop.airborne({0, 11, 0.8}).fly();
   EXPECT_EQ(loop.planner.jobs.front().request.volume.max.y(), 11.0);
   EXPECT_EQ(loop.planner.jobs.front().request.volume.min.z(), 0.8);
+  // By as much as it is out, it is led back in.
+  const double inset = 0.3 * planner::base::HorizonSettings{}.margin;
+  EXPECT_DOUBLE_EQ(loop.planner.jobs.front().request.volume_clearance, 1.0 + inset);
   loop.run(5.0);
+  EXPECT_EQ(loop.planner.jobs.back().request.volume_clearance, 0.0);
   EXPECT_EQ(loop.planner.jobs.back().request.volume.max.y(), 10.0 - 0.3 * planner::base::HorizonSettings{}.margin);
   EXPECT_GT(loop.planner.jobs.back().request.volume.min.z(), 0.9);
 }
