@@ -148,12 +148,17 @@ TEST_F(SimulatedDds, TakesNoSetpointWithoutAControlMode) {
   PayloadWriter modes(companion_, "rt/px4_3/fmu/in/offboard_control_mode", bridge::dds::kOffboardControlModeType);
   ASSERT_TRUE(step_until([&] { return setpoints.readers() == 1 && modes.readers() == 1; }));
   // A reader that the writer knows may not know the writer yet: what is written then is lost.
-  std::uint64_t malformed = 0;
-  const auto one_more_malformed = [&] { return malformed += setpoints.write(Payload{0, 1, 0, 0, 5}) ? 1 : 0; };
-  ASSERT_TRUE(step_until([&] { return one_more_malformed() > 0 && dds_.malformed() > 0; }));
+  std::uint64_t malformed = 0;  // of both, written
+  const auto is_heard = [&](PayloadWriter& writer) {
+    return step_until([&, before = malformed] {
+      malformed += writer.write(Payload{0, 1, 0, 0, 5}) ? 1 : 0;
+      return dds_.malformed() > before;
+    });
+  };
+  ASSERT_TRUE(is_heard(modes));
+  ASSERT_TRUE(is_heard(setpoints));
   ASSERT_TRUE(setpoints.write_message(px4_msgs::msg::dds_::TrajectorySetpoint_()));
-  const std::uint64_t before = malformed;
-  ASSERT_TRUE(step_until([&] { return one_more_malformed() > before && dds_.malformed() > before; }));
+  ASSERT_TRUE(is_heard(setpoints));
   EXPECT_EQ(dds_.setpoints(), 0U);
   EXPECT_FALSE(autopilot_.stream_live());
   px4_msgs::msg::dds_::OffboardControlMode_ mode;
