@@ -155,7 +155,7 @@ TEST(Companion, APathMayBeginWhereTheVehicleIsAlready) {
   EXPECT_DOUBLE_EQ(loop.planner.jobs.front().request.volume_clearance, 1.0 + inset);
   loop.run(5.0);
   EXPECT_EQ(loop.planner.jobs.back().request.volume_clearance, 0.0);
-  EXPECT_EQ(loop.planner.jobs.back().request.volume.max.y(), 10.0 - 0.3 * planner::base::HorizonSettings{}.margin);
+  EXPECT_EQ(loop.planner.jobs.back().request.volume.max.y(), 10.0 - inset);
   EXPECT_GT(loop.planner.jobs.back().request.volume.min.z(), 0.9);
 }
 
