@@ -376,7 +376,7 @@ std::vector<Vec3> Guide::up_to_closed(const PathRequest& request) const {
   return way;
 }
 
-// Takes off the part of the way that the vehicle has gone; false where it has left the way.
+// Takes off the part of the way that the vehicle has gone; false where it has left it, or something stands between.
 bool Guide::pass(const Vec3& position) {
   double least = base::kInfinity;
   double gone = 0.0;
@@ -393,7 +393,7 @@ bool Guide::pass(const Vec3& position) {
   }
   way_.erase(way_.begin(), way_.begin() + static_cast<std::ptrdiff_t>(leg) - 1);
   way_.front() = nearest;
-  return least <= kStrayed;
+  return least <= kStrayed && standing_.is_clear(position, nearest, 0.0);
 }
 
 // How far what stands is from there, m, or from a place beside it where that is more: a way may pass near something

@@ -153,6 +153,26 @@ TEST(Guide, LeadsOutOfADeadEndToPlacesInSight) {
 }
 
 // As wide as what a map of cells leaves of a door of 1.3 m.
+// Who evaded into the next room is as near to its way as before, but for the wall between.
+TEST(Guide, LooksForTheWayAnewWhereSomethingStandsBetween) {
+  std::vector<base::Track> tracks = wall(10, 5, 1.6);
+  tracks.push_back(box({4, 1.5, 4}, {12, 0.2, 12}));
+  tracks = numbered(std::move(tracks));
+  const Vec3 before(0, 3, 2), behind(0, 0.8, 2);
+  Guide guide(base::HorizonSettings{}, Guide::Knowledge::kWhole);
+  PathRequest request = guide_request(tracks, before);
+  guide.lead(request, 0.0);
+  ASSERT_FALSE(guide.way().empty());
+  EXPECT_GT(request.target.y(), 3.0);
+  request = guide_request(tracks, behind);
+  for (int call = 0; call < 100; ++call) {
+    request = guide_request(tracks, behind);
+    guide.lead(request, 0.1 * call);
+  }
+  EXPECT_LT(request.target.x(), -1.9) << "round the end of the wall between";
+  EXPECT_GT(clearance_of(tracks, behind, request.target), 0.0);
+}
+
 TEST(Guide, FindsANarrowDoorWhereverItIsBesideTheGrid) {
   const base::HorizonSettings settings;
   for (const double aside : {0.0, 0.05, 0.1, 0.125, 0.15, 0.2}) {
