@@ -152,7 +152,6 @@ TEST(Guide, LeadsOutOfADeadEndToPlacesInSight) {
   EXPECT_LT(flown, 36.0);
 }
 
-// As wide as what a map of cells leaves of a door of 1.3 m.
 // Who evaded into the next room is as near to its way as before, but for the wall between.
 TEST(Guide, LooksForTheWayAnewWhereSomethingStandsBetween) {
   std::vector<base::Track> tracks = wall(10, 5, 1.6);
@@ -164,7 +163,6 @@ TEST(Guide, LooksForTheWayAnewWhereSomethingStandsBetween) {
   guide.lead(request, 0.0);
   ASSERT_FALSE(guide.way().empty());
   EXPECT_GT(request.target.y(), 3.0);
-  request = guide_request(tracks, behind);
   for (int call = 0; call < 100; ++call) {
     request = guide_request(tracks, behind);
     guide.lead(request, 0.1 * call);
@@ -173,6 +171,7 @@ TEST(Guide, LooksForTheWayAnewWhereSomethingStandsBetween) {
   EXPECT_GT(clearance_of(tracks, behind, request.target), 0.0);
 }
 
+// As wide as what a map of cells leaves of a door of 1.3 m.
 TEST(Guide, FindsANarrowDoorWhereverItIsBesideTheGrid) {
   const base::HorizonSettings settings;
   for (const double aside : {0.0, 0.05, 0.1, 0.125, 0.15, 0.2}) {
