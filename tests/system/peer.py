@@ -140,11 +140,15 @@ class Peer:
         return self.command(MAV.MAV_CMD_COMPONENT_ARM_DISARM, 1)
 
     def set_parameter(self, name, value):
-        """A whole number, by its bytes as PX4 has it."""
+        """A whole number, by its bytes as PX4 has it. Asked again where no answer comes, as the parameter protocol wants:
+        either may be lost."""
         as_float = struct.unpack("<f", struct.pack("<i", value))[0]
-        self.link.mav.param_set_send(self.system, 1, name.encode(), as_float, MAV.MAV_PARAM_TYPE_INT32)
-        answer = self.pump(5.0, lambda m: m.get_type() == "PARAM_VALUE" and m.param_id == name)
-        check(answer is not None, f"{name} is set to {value}")
+
+        def is_told():
+            self.link.mav.param_set_send(self.system, 1, name.encode(), as_float, MAV.MAV_PARAM_TYPE_INT32)
+            return self.pump(1.0, lambda m: m.get_type() == "PARAM_VALUE" and m.param_id == name) is not None
+
+        check(any(is_told() for _ in range(10)), f"{name} is set to {value}")
 
     def mode(self):
         return self.heartbeat.custom_mode if self.heartbeat else None
