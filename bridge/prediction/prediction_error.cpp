@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/base/settings.hpp"
 #include "planner/geometry/obstacle_motion.hpp"
 
 namespace jink::bridge::prediction {
@@ -16,7 +17,8 @@ constexpr double kMemory = 1.0;      // s, time constant with which errors are f
 constexpr double kPrior = 0.1;       // s⁴, weight of what is assumed of a new track
 constexpr double kNoise = 1e-3;      // m, m/s
 constexpr double kSlack = 1e-3;      // s
-constexpr double kAbout = 0.16;      // s, before and after an instant: six periods of 20 Hz
+constexpr double kReaction = planner::base::HorizonSettings::kReaction;  // s
+constexpr double kAbout = 0.16;  // s, before and after an instant: six periods of 20 Hz
 
 double square(double x) {
   return x * x;
@@ -66,6 +68,7 @@ void PredictionError::observe(double t, const planner::base::Track& measured, co
                               LawsByKind& laws) {
   judge(t, measured, laws);
   const bool swings = std::holds_alternative<HarmonicMotion>(predicted.motion);
+  const bool exact = measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0;
   if (!begun_ || swings != swings_) {
     const bool noisy = measured.position_sigma > kNoise || measured.velocity_sigma > kNoise;
     const double assumed = noisy && !swings ? measured.velocity.squaredNorm() / square(kTurning) : 0.0;
@@ -86,9 +89,13 @@ void PredictionError::observe(double t, const planner::base::Track& measured, co
     const double since = then.age + lead;
     if (since < kLeastLead || since > kMostLead) continue;
     then.acceleration_sigma = 0.0;
+    const Vec3 error = measured.position - then.position(lead);
+    // What changes does so after a prediction was kept, by kKeptEvery at most: so much later it is looked at.
+    if (exact && then.position_sigma <= 0.0 && since > kReaction - kSlack && since < kReaction + kKeptEvery - kSlack)
+      sudden_change_ = std::max(sudden_change_, error.norm() / kReaction);
     const double noise = 3.0 * (square(measured.position_sigma) + square(then.sigma(lead)));
     const double weight = 0.75 * square(square(since));  // of three axes at ½ since²
-    errors_ += (measured.position - then.position(lead)).squaredNorm() - noise;
+    errors_ += error.squaredNorm() - noise;
     weights_ += weight;
   }
   const double valid = t + predicted.age;

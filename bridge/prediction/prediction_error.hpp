@@ -46,6 +46,9 @@ class PredictionError {
   /// What was measured at t, with its sigma, and what is predicted since, from predicted.age later on.
   void observe(double t, const planner::base::Track& measured, const Prediction& predicted, LawsByKind& laws);
   [[nodiscard]] double acceleration_sigma() const;
+  /// By how much the velocity of what is measured exactly has been another than predicted at most, on average over
+  /// HorizonSettings::kReaction, m/s. 0 where it is measured with noise.
+  [[nodiscard]] double sudden_change() const { return sudden_change_; }
   /// What was seen has more weight in that than what is assumed of a new track.
   [[nodiscard]] bool watched() const;
 
@@ -67,6 +70,7 @@ class PredictionError {
   bool swings_ = false;                  // what was predicted last
   double errors_ = 0.0, weights_ = 0.0;  // (m/s²)², in units of the lead's fourth power
   double last_ = 0.0;
+  double sudden_change_ = 0.0;
 };
 
 }  // namespace jink::bridge::prediction

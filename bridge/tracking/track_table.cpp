@@ -283,6 +283,7 @@ std::vector<planner::base::Track> TrackTable::predict(double now, double trust,
       }
     }
     tracks.push_back(prediction::predict(entry.track, now, trust));
+    if (entry.error) tracks.back().sudden_change = entry.error->sudden_change();
   }
   if (writers_.size() > 1) make_ids_unique(tracks);
   return tracks;

@@ -88,7 +88,7 @@ struct HorizonSettings {
   double margin = 0.35;              ///< kept from every obstacle on top of the radii, for the tracking error
   double sigma_factor = 2.0;         ///< standard deviations of a track's position that clearance is asked for
   double track_acceleration = 0.4;   ///< what a track's acceleration may be off by, m/s²
-  double sudden_change = 1.5;        ///< by which a noisy track's velocity may be another at once, m/s
+  double sudden_change = 1.5;        ///< by which a track's velocity may be another at once, at most, m/s
   double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
   double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
   double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective

@@ -68,6 +68,7 @@ struct Track {
   double velocity_sigma = 0.0;       ///< standard deviation of the velocity, per axis
   double age = 0.0;                  ///< time since the measurement that this is predicted from
   Body body{};                       ///< in the sphere
+  double sudden_change = 0.0;        ///< by which its velocity has been seen to be another at once, at most, m/s
 };
 
 }  // namespace jink::planner::base

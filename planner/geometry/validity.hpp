@@ -33,11 +33,12 @@ inline constexpr double kTurning = 1e3;   ///< rad/s
 [[nodiscard]] bool is_valid(const base::VehicleLimits& vehicle);
 /// Whether it lies in its sphere of that radius, and turns about its centre at less than kFastest.
 [[nodiscard]] bool is_valid(const base::Body& body, double radius);
-/// Whether it is a body that moves: radius, standard deviations and age not below 0.
+/// Whether it is a body that moves: radius, standard deviations, age and change not below 0.
 [[nodiscard]] inline bool is_valid(const base::Track& track) {
   return is_within(track.position, kFarthest) && is_within(track.velocity, kFastest) &&
          is_within(track.acceleration, kHardest) && is_amount(track.radius) && is_amount(track.position_sigma) &&
-         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest) && is_valid(track.body, track.radius);
+         is_amount(track.velocity_sigma) && is_amount(track.age, kLongest) && is_amount(track.sudden_change) &&
+         is_valid(track.body, track.radius);
 }
 /// Whether it neither moves nor turns.
 [[nodiscard]] inline bool is_at_rest(const base::Track& track) {

@@ -48,18 +48,19 @@ class TrackMotion {
     const double moved = track_.velocity_sigma * ahead;
     const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
     const double unsure = clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead;
-    return std::max(is_noisy() ? clearance.evasion : 0.0, std::min(clearance.limit, unsure));
+    return std::max(evasion(clearance), std::min(clearance.limit, unsure));
   }
   /// A bound of uncertainty().
-  [[nodiscard]] static double most_uncertainty(const Clearance& clearance) {
-    return std::max(clearance.evasion, clearance.limit);
+  [[nodiscard]] double most_uncertainty(const Clearance& clearance) const {
+    return std::max(evasion(clearance), clearance.limit);
   }
-  /// For how long the vehicle goes on as it does where this moves otherwise, s.
-  [[nodiscard]] double reaction(const Clearance& clearance) const { return is_noisy() ? clearance.reaction : 0.0; }
+  /// How far it gains on a vehicle that evades it, should it move otherwise at once, m.
+  [[nodiscard]] double evasion(const Clearance& clearance) const {
+    const bool noisy = track_.position_sigma > 0.0 || track_.velocity_sigma > 0.0;
+    return clearance.evasion(noisy ? clearance.sudden_change : std::min(clearance.sudden_change, track_.sudden_change));
+  }
 
  private:
-  [[nodiscard]] bool is_noisy() const { return track_.position_sigma > 0.0 || track_.velocity_sigma > 0.0; }
-
   const base::Track& track_;
   double trust_;
 };
@@ -98,7 +99,7 @@ class PathMotion {
                     clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
   }
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) { return clearance.limit; }
-  [[nodiscard]] static double reaction(const Clearance& /*clearance*/) { return 0.0; }
+  [[nodiscard]] static double evasion(const Clearance& /*clearance*/) { return 0.0; }
 
  private:
   const geometry::KnownPath& path_;
@@ -187,8 +188,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
-  const double reaction = motion.reaction(clearance);
-  const double advance = std::min(clearance.limit, reaction * fastest);
+  const double advance = std::min({clearance.limit, motion.evasion(clearance), clearance.reaction * fastest});
   const double room = motion.most_uncertainty(clearance) + advance;
   const bool is_solid = motion.body().solid != nullptr;
   const double passed = (speed + fastest) * step;
@@ -206,7 +206,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
     if (squared_distance(motion.position(begin + half), group.where) >= wanted * wanted) continue;
     NearbyObstacle obstacle;
     obstacle.to = motion.position(begin);
-    obstacle.reaction = reaction / step;
+    obstacle.reaction = clearance.reaction / step;
     obstacle.most_advance = advance;
     for (std::size_t n = group.first; n < group.last && static_cast<double>(n) * step < motion.until(); ++n) {
       const double end = static_cast<double>(n + 1) * step;

@@ -2,6 +2,7 @@
 // Which obstacles can be met during each step of a horizon, and how they move then.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,11 +19,20 @@ struct Clearance {
   double hard = 0.0;                ///< the vehicle's radius and the margin
   double sigma_factor = 0.0;        ///< standard deviations of the position that are kept free
   double track_acceleration = 0.0;  ///< what a track's acceleration may be off by, m/s²
-  double evasion = 0.0;             ///< of noisy tracks, the least: who moves otherwise is evaded with it, m
+  double sudden_change = 0.0;       ///< by which a noisy track's velocity may be another at once, and an exact one's
+                                    ///< at most, m/s: by as much as it has been seen to be
   double limit = 0.0;               ///< the most that uncertainty may ask for
   double acceleration_trust = base::kInfinity;  ///< as in predict_position
   double hard_beside_standing = 0.0;            ///< `hard` of what stands
-  double reaction = 0.0;  ///< s, for which a vehicle goes on as it does where a noisy track moves otherwise
+  double reaction = 0.0;               ///< s, for which a vehicle goes on as it does where a track moves otherwise,
+  double evading = base::kInfinity;    ///< m/s², with which it evades from then on,
+  double most_gain = base::kInfinity;  ///< s, that the track gains on it at most
+
+  /// How far a track, whose velocity is another at once by `change`, m/s, gains on the vehicle until that, evading, is
+  /// as fast, m.
+  [[nodiscard]] double evasion(double change) const {
+    return change * std::min(most_gain, reaction + 0.5 * change / evading);  // most_gain too where that is 0 / 0
+  }
 };
 
 /// One obstacle during one step of the horizon, in which it moves evenly. One that turns within the step is larger by

@@ -154,19 +154,17 @@ void PathProblem::change_offsets() {
   }
 }
 
-// What changes its velocity at once gains that much on the vehicle for as long as it takes to react, and less from then
-// on, until the vehicle that evades is as fast.
 Clearance PathProblem::clearance() const {
-  const double evading = settings_.emergency_acceleration(request_.vehicle.max_acceleration);
-  const double gains_for = base::HorizonSettings::kReaction + 0.5 * request_.sudden_change / evading;  // s
   return {request_.vehicle.radius + request_.margin,
           settings_.sigma_factor,
           request_.track_acceleration,
-          request_.sudden_change * std::min(gains_for, horizon()),
+          request_.sudden_change,
           settings_.clearance_limit,
           request_.acceleration_trust,
           request_.vehicle.radius + request_.margin_beside_standing(),
-          request_.sudden_change > 0.0 ? base::HorizonSettings::kReaction : 0.0};
+          base::HorizonSettings::kReaction,
+          settings_.emergency_acceleration(request_.vehicle.max_acceleration),
+          horizon()};
 }
 
 // Where any motion can be. Each step moves the velocity along a straight line towards one that keeps the limits, by at

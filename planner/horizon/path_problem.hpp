@@ -32,7 +32,7 @@ struct PathRequest {
   double margin = 0.0;                           ///< kept from every obstacle on top of the radii
   double standing_margin = base::kInfinity;      ///< kept from what stands, where that is less
   double track_acceleration = 0.0;               ///< what a track's acceleration may be off by, m/s²
-  double sudden_change = 0.0;                    ///< by which a noisy track's velocity may be another at once, m/s
+  double sudden_change = 0.0;                    ///< by which a track's velocity may be another at once, at most, m/s
   double acceleration_trust = base::kInfinity;   ///< as in predict_position
   double time_price = 0.0;  ///< length that a lost second counts as, m/s; at least the cruise speed
   bool stuck = false;       ///< the vehicle has come no nearer to the target for a while

@@ -118,6 +118,9 @@ void add_tracks(nb::module_& module) {
           "velocity_sigma", [](Tracks& tracks) { return column(tracks, &Track::velocity_sigma); }, "n, m/s")
       .def_prop_ro(
           "age", [](Tracks& tracks) { return column(tracks, &Track::age); }, "n, s since it was measured")
+      .def_prop_ro(
+          "sudden_change", [](Tracks& tracks) { return column(tracks, &Track::sudden_change); },
+          "n, m/s, by which the velocity has been seen to be another at once")
       .def("set_solid", &set_solid, nb::arg("i"), nb::arg("solid").none(), nb::arg("yaw") = 0.0,
            nb::arg("yaw_rate") = 0.0,
            "Makes track i this solid, turned by yaw (rad); its radius becomes the solid's reach.");

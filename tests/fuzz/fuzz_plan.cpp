@@ -93,6 +93,7 @@ base::Track any_track(Numbers& n, const horizon::PathRequest& r, std::uint64_t i
   track.position_sigma = n.in(0.0, 0.2);
   track.velocity_sigma = n.in(0.0, 0.3);
   track.age = n.in(0.0, 0.5);
+  track.sudden_change = n.one_in(2) ? 0.0 : n.in(0.0, 4.0);
   return track;
 }
 
@@ -174,6 +175,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
                                        &track.position_sigma,
                                        &track.velocity_sigma,
                                        &track.age,
+                                       &track.sudden_change,
                                        &point.position[axis],
                                        &point.t,
                                        &path.offset,

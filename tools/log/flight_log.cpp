@@ -244,12 +244,12 @@ void FlightLog::add_job(const bridge::companion::PlanJob& job) {
   for (const Vec3& place : way) line_.exact_vector(place);
   line_.close(']');
   line_.key("tracks").open('[');
-  for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age, body] : job.tracks) {
+  for (const auto& [id, p, v, a, r, position_sigma, velocity_sigma, age, body, change] : job.tracks) {
     line_.open('[').integer(id);
     for (const Vec3& part : {p, v, a}) line_.exact(part.x()).exact(part.y()).exact(part.z());
     line_.exact(r).exact(position_sigma).exact(velocity_sigma).exact(age);
     if (body.solid) add_body(body);
-    line_.close(']');
+    line_.exact(change).close(']');
   }
   line_.close(']').key("standing").open('[');
   for (const std::uint64_t id : job.standing) line_.integer(id);

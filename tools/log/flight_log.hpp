@@ -50,16 +50,17 @@ struct FlightLogOptions {
 /// the one with more acceleration, and in `from`: {begun, start, p, v, target, vehicle: [radius, length, mass,
 /// max_speed, cruise_speed, max_acceleration, max_jerk, max_climb], volume: [min, max], volume_clearance, margin,
 /// standing_margin, track_acceleration, sudden_change, acceleration_trust, time_price, stuck, holds, visit, tracks:
-/// [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age], ...], at the end of each that
-/// has a solid {yaw, yaw_rate, prism: [half edges, corner, rounding, centre, three axes] or hull: [vertices]}
-/// (planner::base::Solid, numbers in a row), standing: [id, ...] of the tracks that count among what stands, forecasts:
-/// [{track, radius, position_sigma, velocity_sigma, plain_until, bounces: [begin, velocity, min, max] or swings:
-/// [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin, position_sigma,
-/// velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other vehicles (planner::KnownPath),
-/// map: {seen, where: [min, max], up, floor, sigma}, what of the header's map, or of that and the boxes of the `seen`
-/// record of that number, was in view (bridge::companion::MapView), and previous: [[t, x, y, z], ...]}, all valid at
-/// `start`, the previous path's times from there on. A number in it that is not finite is the text "inf", "-inf" or
-/// "nan". With the header's seed and parameters the plan can be made again (tools/log/flight_replay.hpp).
+/// [[id, x, y, z, vx, vy, vz, ax, ay, az, radius, position_sigma, velocity_sigma, age, sudden_change], ...], before the
+/// last of each that has a solid {yaw, yaw_rate, prism: [half edges, corner, rounding, centre, three axes] or hull:
+/// [vertices]} (planner::base::Solid, numbers in a row), standing: [id, ...] of the tracks that count among what
+/// stands, forecasts: [{track, radius, position_sigma, velocity_sigma, plain_until, bounces: [begin, velocity, min,
+/// max] or swings: [frequency, terms]}, ...] (bridge::Forecast, numbers in a row), paths: [{id, offset, radius, margin,
+/// position_sigma, velocity_sigma, age, until, points: [[t, x, y, z], ...]}, ...] of the team's other vehicles
+/// (planner::KnownPath), map: {seen, where: [min, max], up, floor, sigma}, what of the header's map, or of that and the
+/// boxes of the `seen` record of that number, was in view (bridge::companion::MapView), and previous: [[t, x, y, z],
+/// ...]}, all valid at `start`, the previous path's times from there on. A number in it that is not finite is the text
+/// "inf", "-inf" or "nan". With the header's seed and parameters the plan can be made again
+/// (tools/log/flight_replay.hpp).
 ///
 /// The observers may be called from one thread at a time.
 class FlightLog final : public bridge::companion::FlightObserver, public sim::world::TruthObserver {

@@ -87,8 +87,10 @@ planner::base::Body body_of(const Json& record, double radius) {
 }
 
 planner::base::Track track_of(const Json& item) {
-  constexpr std::size_t kNumbers = 14;  // and a body, where it has one
-  if (!item.is_array() || item.size() != kNumbers + 1) check_list(item, "tracks", kNumbers);
+  constexpr std::size_t kNumbers = 14;  // then a body, where it has one, and one more, that older logs do not have
+  const bool newer = item.is_array() && item.size() > kNumbers && !item.back().is_object();
+  const std::size_t last = newer ? item.size() - 1 : item.size();
+  if (!item.is_array() || last != kNumbers + 1) check_list(item, "tracks", newer ? kNumbers + 1 : kNumbers);
   if (!item[0].is_number_unsigned()) refuse("\"tracks\" holds an id that is not a whole number");
   std::array<double, 13> x{};
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = exact(item[i + 1], "tracks");
@@ -100,7 +102,8 @@ planner::base::Track track_of(const Json& item) {
           x[10],
           x[11],
           x[12],
-          item.size() > kNumbers ? body_of(item[kNumbers], x[9]) : planner::base::Body()};
+          last > kNumbers ? body_of(item[kNumbers], x[9]) : planner::base::Body(),
+          newer ? exact(item[last], "tracks") : 0.0};
 }
 
 planner::geometry::KnownPath known_path_of(const Json& item) {

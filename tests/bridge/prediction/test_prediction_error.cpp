@@ -93,6 +93,32 @@ TEST(PredictionError, WithoutNoiseNothingIsAssumed) {
   EXPECT_LT(judged.error.acceleration_sigma(), 1e-6);
 }
 
+// Walks, stands from 1 s on, and goes on across at 3 s.
+Vec3 walker(double t) {
+  return {1.2 * std::min(t, 1.0), 1.6 * std::max(0.0, t - 3.0), 0.0};
+}
+
+TEST(PredictionError, WhoStopsOrSetsOffAtOnceIsRemembered) {
+  Judged judged(/*with_noise=*/false);
+  judged.watch(walker, 1.0);
+  EXPECT_NEAR(judged.error.sudden_change(), 0.0, 1e-9);
+  judged.watch(walker, 2.9);
+  EXPECT_NEAR(judged.error.sudden_change(), 1.2, 0.15);
+  judged.watch(walker, 3.6);
+  EXPECT_NEAR(judged.error.sudden_change(), 1.6, 0.2);
+  judged.watch(walker, 20.0);
+  EXPECT_NEAR(judged.error.sudden_change(), 1.6, 0.2) << "not forgotten";
+}
+
+TEST(PredictionError, WhatChangesSlowlyOrIsMeasuredWithNoiseHasNotChangedAtOnce) {
+  Judged judged(/*with_noise=*/false);
+  judged.watch([](double t) { return Vec3(2.0 * std::sin(0.7 * t), 0.0, 0.0); }, 10.0);  // at 1 m/s² at most
+  EXPECT_LT(judged.error.sudden_change(), 0.4);
+  Judged noisy(/*with_noise=*/true);
+  noisy.watch(walker, 4.0);
+  EXPECT_EQ(noisy.error.sudden_change(), 0.0);
+}
+
 // It is believed for what it foresaw itself, and not before.
 TEST(PredictionError, ALearnedSwingIsDoubtedUntilItHasShownThatItIsBetter) {
   Judged judged(/*with_noise=*/true);

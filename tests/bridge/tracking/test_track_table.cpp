@@ -98,6 +98,23 @@ TEST(TrackTable, TrustsAnAccelerationForAWhileOnly) {
   EXPECT_EQ(beyond.acceleration.x(), 0.0);
 }
 
+// Somebody walks, and turns round at once.
+TEST(TrackTable, TellsOfATrackNearTheVehicleHowSuddenlyItChanged) {
+  TrackTable table(kCoast);
+  for (int i = 0; i < 40; ++i) {
+    const double t = 10.0 + 0.05 * i;
+    const double x = std::min(0.05 * i, 2.0 - 0.05 * i);
+    if (i > 0) table.find_self(t, {50.0, 0, 0}, Vec3::Zero(), 0.3);
+    table.ingest(message(t, 0.0, {track(1, {30.0 + x, 0, 0}, {i < 20 ? 1.0 : -1.0, 0, 0}), track(2, {0, x, 0})}));
+    if (i == 19) {
+      EXPECT_NEAR(table.predict(t, 1.0).at(0).sudden_change, 0.0, 1e-9);
+    }
+  }
+  const auto tracks = table.predict(12.0, 1.0);
+  EXPECT_NEAR(tracks.at(0).sudden_change, 2.0, 0.25);
+  EXPECT_EQ(tracks.at(1).sudden_change, 0.0) << "too far away to be watched";
+}
+
 TEST(TrackTable, ATrackThatGoesMissingCoastsAndThenGoes) {
   TrackTable table(kCoast);
   table.ingest(message(10.0, 0.0, {track(1, {0, 0, 0}, {1, 0, 0}), track(2, {5, 0, 0})}));

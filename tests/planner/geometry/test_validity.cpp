@@ -116,6 +116,7 @@ std::vector<Field> fields() {
       JINK_FIELD(kAll, tracks[0].position_sigma, kNoAmount),
       JINK_FIELD(kAll, tracks[0].velocity_sigma, kNoAmount),
       JINK_FIELD(kAll, tracks[0].age, kNoAmount),
+      JINK_FIELD(kAll, tracks[0].sudden_change, kNoAmount),
       JINK_FIELD(kPlanners | kVerifier, paths[0].points[1].position[1], kNoPlace),
       JINK_FIELD(kPlanners | kVerifier, paths[0].points[1].t,
                  (std::vector<double>{kNaN, kInf, -kInf, 0.0, -1.0, 1e300})),

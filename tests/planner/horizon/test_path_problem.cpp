@@ -416,11 +416,11 @@ void add_to_cost(double distance, double nearer, const base::Track& track, doubl
   const double sigma = std::hypot(track.position_sigma, track.velocity_sigma * ahead);
   const double unsure = s.sigma_factor * sigma + 0.5 * r.track_acceleration * ahead * ahead;
   const double evading = s.emergency_share * std::min(r.vehicle.max_acceleration, s.acceleration_limit);
-  const double until = std::min(0.45 + r.sudden_change / (2.0 * evading), s.horizon());  // s
-  const double evasion = sigma > 0.0 ? r.sudden_change * until : 0.0;
+  const double change = sigma > 0.0 ? r.sudden_change : std::min(r.sudden_change, track.sudden_change);  // m/s
+  const double evasion = change * std::min(0.45 + change / (2.0 * evading), s.horizon());
   const double extra = std::max(evasion, std::min(s.clearance_limit, unsure));
   const double in_reaction = 0.45 / s.step * std::max(0.0, nearer);
-  const double advance = sigma > 0.0 && r.sudden_change > 0.0 ? std::min(s.clearance_limit, in_reaction) : 0.0;
+  const double advance = std::min({s.clearance_limit, evasion, in_reaction});
   add_to_cost(distance, r.vehicle.radius + r.margin, extra, weight, cost, advance);
 }
 
@@ -464,6 +464,7 @@ std::vector<base::Track> random_tracks(base::RandomStream& random) {
     track.position_sigma = id % 3 == 0 ? 0.0 : random.uniform(0.0, 0.1);
     track.velocity_sigma = id % 3 == 0 ? 0.0 : random.uniform(0.0, 0.1);
     track.age = random.uniform(0.0, 0.3);
+    track.sudden_change = id % 2 == 0 ? 0.0 : random.uniform(0.0, 4.0);
     tracks.push_back(track);
   }
   return tracks;

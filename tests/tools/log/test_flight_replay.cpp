@@ -291,6 +291,28 @@ TEST(FlightReplay, PlansAmongSolidsAreRepeated) {
   }
 }
 
+// A log from before it was says nothing of it, and is read.
+TEST(FlightReplay, PlansAmongWhatChangesSuddenlyAreRepeated) {
+  const support::Folder folder;
+  const auto file = folder.path() / "flight.jsonl";
+  RealTimePlans plans(file);
+  planner::base::Track exact = sphere(1, {8, 0.2, 2}, {-1, 0.1, 0}, 0.8);
+  exact.position_sigma = exact.velocity_sigma = 0.0;
+  exact.sudden_change = 1.0;
+  plans.make(job(0, {exact}), std::chrono::seconds(10));
+  plans.close();
+  EXPECT_TRUE(compare(file).differences.empty());
+  const auto [header, line] = first_lines(file);
+  Json changed = Json::parse(line);
+  Json& numbers = changed["from"]["tracks"][0];
+  ASSERT_EQ(numbers.size(), 15U);
+  for (const bool cut : {false, true}) {
+    numbers.back() = 0.0;
+    if (cut) numbers.erase(numbers.size() - 1);
+    EXPECT_EQ(compare(folder.log(header + "\n" + changed.dump() + "\n")).differences.size(), 1U);
+  }
+}
+
 /// That a flag of the request is recorded, and decides; a log from before it was says nothing of it, and is read.
 void expect_flag_decides(const char* flag, bridge::companion::PlanJob next) {
   const support::Folder folder;
