@@ -152,7 +152,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
   base::TimedPoint& point = path.points[n.below(path.points.size())];
   const auto axis = static_cast<Eigen::Index>(n.below(3));
-  const std::array<double*, 31> fields{&r.position[axis],
+  const std::array<double*, 32> fields{&r.position[axis],
                                        &r.velocity[axis],
                                        &r.target[axis],
                                        &r.volume.min[axis],
