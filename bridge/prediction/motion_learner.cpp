@@ -38,10 +38,6 @@ double along(double x, bool upper) {
   return upper ? x : -x;
 }
 
-bool exact(const planner::base::Track& measured) {
-  return measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0;
-}
-
 MotionSample mean(const MotionSample& a, const MotionSample& b) {
   const double all = a.measurements + b.measurements;
   const double first = a.measurements / all;
@@ -119,7 +115,7 @@ void MotionLearner::remember(const MotionSample& sample, bool exact) {
 void MotionLearner::observe(double t, const planner::base::Track& measured, const planner::base::Track& estimate,
                             std::uint64_t name, Experience& all) {
   if (first_ < 0.0) first_ = t;
-  remember({t, measured.position, measured.velocity}, exact(measured));
+  remember({t, measured.position, measured.velocity}, measured.is_exact());
   recent_.push_back({t, measured.position, measured.velocity});
   if (recent_.size() > 2 * kNoisyWindow) recent_.erase(recent_.begin());
   const double noise = kSigmas * estimate.position_sigma;
@@ -163,9 +159,9 @@ void MotionLearner::turned(double t, int axis, double where, double speed, std::
 
 // Two straight pieces at the same speed, one axis turned round.
 void MotionLearner::look_for_turn(double t, const planner::base::Track& measured, std::uint64_t name, Experience& all) {
-  const std::size_t window = exact(measured) ? 1 : kNoisyWindow;
+  const std::size_t window = measured.is_exact() ? 1 : kNoisyWindow;
   if (recent_.size() < 2 * window) return;
-  if (!exact(measured) && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
+  if (!measured.is_exact() && last_turn_ >= 0.0 && t - last_turn_ < kTurnPause) return;
   struct Piece {
     double t = 0.0;
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();

@@ -68,7 +68,6 @@ void PredictionError::observe(double t, const planner::base::Track& measured, co
                               LawsByKind& laws) {
   judge(t, measured, laws);
   const bool swings = std::holds_alternative<HarmonicMotion>(predicted.motion);
-  const bool exact = measured.position_sigma <= 0.0 && measured.velocity_sigma <= 0.0;
   if (!begun_ || swings != swings_) {
     const bool noisy = measured.position_sigma > kNoise || measured.velocity_sigma > kNoise;
     const double assumed = noisy && !swings ? measured.velocity.squaredNorm() / square(kTurning) : 0.0;
@@ -91,7 +90,8 @@ void PredictionError::observe(double t, const planner::base::Track& measured, co
     then.acceleration_sigma = 0.0;
     const Vec3 error = measured.position - then.position(lead);
     // What changes does so after a prediction was kept, by kKeptEvery at most: so much later it is looked at.
-    if (exact && then.position_sigma <= 0.0 && since > kReaction - kSlack && since < kReaction + kKeptEvery - kSlack)
+    if (measured.is_exact() && then.position_sigma <= 0.0 && since > kReaction - kSlack &&
+        since < kReaction + kKeptEvery - kSlack)
       sudden_change_ = std::max(sudden_change_, error.norm() / kReaction);
     const double noise = 3.0 * (square(measured.position_sigma) + square(then.sigma(lead)));
     const double weight = 0.75 * square(square(since));  // of three axes at ½ since²

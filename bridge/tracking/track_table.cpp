@@ -124,7 +124,7 @@ void TrackTable::ingest(const TrackMessage& message, double measured) {
 
 void TrackTable::take(Entry& entry, const base::Stamped<planner::base::Track, base::Frame::kLocal>& measured) {
   const double before = std::exchange(entry.track, measured).stamp;
-  if (measured.value.position_sigma > 0.0 || measured.value.velocity_sigma > 0.0) {
+  if (!measured.value.is_exact()) {
     if (!entry.filter) entry.filter = std::make_unique<prediction::ImmFilter>();
     entry.filter->update(measured.stamp - before, measured.value);
     entry.filter->apply(entry.track.value);

@@ -69,6 +69,9 @@ struct Track {
   double age = 0.0;                  ///< time since the measurement that this is predicted from
   Body body{};                       ///< in the sphere
   double sudden_change = 0.0;        ///< by which its velocity has been seen to be another at once, at most, m/s
+
+  /// Whether it is known without noise.
+  [[nodiscard]] bool is_exact() const { return position_sigma <= 0.0 && velocity_sigma <= 0.0; }
 };
 
 }  // namespace jink::planner::base

@@ -25,7 +25,11 @@ base::Box united(const base::Box& a, const base::Box& b) {
 /// How an obstacle on a track moves.
 class TrackMotion {
  public:
-  TrackMotion(const base::Track& track, double trust) : track_(track), trust_(trust) {}
+  TrackMotion(const base::Track& track, const Clearance& clearance)
+      : track_(track),
+        trust_(clearance.acceleration_trust),
+        evasion_(clearance.evasion(track.is_exact() ? std::min(clearance.sudden_change, track.sudden_change)
+                                                    : clearance.sudden_change)) {}
 
   [[nodiscard]] Vec3 position(double t) const { return geometry::predict_position(track_, t, trust_); }
   /// The largest speed within the first `time` seconds: the velocity changes along a line, so it is one end's.
@@ -48,21 +52,19 @@ class TrackMotion {
     const double moved = track_.velocity_sigma * ahead;
     const double sigma = std::sqrt(track_.position_sigma * track_.position_sigma + moved * moved);
     const double unsure = clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * ahead * ahead;
-    return std::max(evasion(clearance), std::min(clearance.limit, unsure));
+    return std::max(evasion_, std::min(clearance.limit, unsure));
   }
   /// A bound of uncertainty().
   [[nodiscard]] double most_uncertainty(const Clearance& clearance) const {
-    return std::max(evasion(clearance), clearance.limit);
+    return std::max(evasion_, clearance.limit);
   }
   /// How far it gains on a vehicle that evades it, should it move otherwise at once, m.
-  [[nodiscard]] double evasion(const Clearance& clearance) const {
-    const bool noisy = track_.position_sigma > 0.0 || track_.velocity_sigma > 0.0;
-    return clearance.evasion(noisy ? clearance.sudden_change : std::min(clearance.sudden_change, track_.sudden_change));
-  }
+  [[nodiscard]] double evasion() const { return evasion_; }
 
  private:
   const base::Track& track_;
   double trust_;
+  double evasion_;
 };
 
 /// The same of one on a known path.
@@ -99,7 +101,7 @@ class PathMotion {
                     clearance.sigma_factor * sigma + 0.5 * clearance.track_acceleration * after * after);
   }
   [[nodiscard]] static double most_uncertainty(const Clearance& clearance) { return clearance.limit; }
-  [[nodiscard]] static double evasion(const Clearance& /*clearance*/) { return 0.0; }
+  [[nodiscard]] static double evasion() { return 0.0; }
 
  private:
   const geometry::KnownPath& path_;
@@ -160,7 +162,7 @@ void NearbyObstacles::build(std::span<const base::Track> tracks, std::span<const
     groups_.push_back(group);
   }
   for (const base::Track& track : tracks) {
-    add(TrackMotion(track, clearance.acceleration_trust), clearance, step, fastest, where, everywhere);
+    add(TrackMotion(track, clearance), clearance, step, fastest, where, everywhere);
   }
   for (const geometry::KnownPath& path : paths) add(PathMotion(path), clearance, step, fastest, where, everywhere);
   for (const base::Track& track : standing) add_standing(track, clearance, where, everywhere);
@@ -188,7 +190,7 @@ void NearbyObstacles::add(const Motion& motion, const Clearance& clearance, doub
   const double speed = motion.fastest(horizon);
   const double hard = motion.radius() + motion.hard(clearance);
   const double most_bend = motion.most_bend(step);
-  const double advance = std::min({clearance.limit, motion.evasion(clearance), clearance.reaction * fastest});
+  const double advance = std::min({clearance.limit, motion.evasion(), clearance.reaction * fastest});
   const double room = motion.most_uncertainty(clearance) + advance;
   const bool is_solid = motion.body().solid != nullptr;
   const double passed = (speed + fastest) * step;

@@ -93,7 +93,6 @@ base::Track any_track(Numbers& n, const horizon::PathRequest& r, std::uint64_t i
   track.position_sigma = n.in(0.0, 0.2);
   track.velocity_sigma = n.in(0.0, 0.3);
   track.age = n.in(0.0, 0.5);
-  track.sudden_change = n.one_in(2) ? 0.0 : n.in(0.0, 4.0);
   return track;
 }
 
@@ -129,8 +128,14 @@ void give_body(Numbers& n, base::Body& body, double radius, Shape& shape) {
   body = {shape.solid(), n.in(-7.0, 7.0), n.one_in(2) ? 0.0 : n.in(-3.0, 3.0)};
 }
 
-/// How a body is turned becomes what nobody meant.
-void make_absurd_turn(Numbers& n, Case& c, double value) {
+/// How a body is turned, or how suddenly a track changed, becomes what nobody meant.
+void make_other_absurd(Numbers& n, Case& c, double value) {
+  if (n.one_in(4)) {
+    c.tracks.front().sudden_change = value;
+    c.absurd = true;
+    c.none = std::isnan(value);
+    return;
+  }
   base::Body& body = n.one_in(2) ? c.tracks.front().body : c.paths.front().body;
   (n.one_in(2) ? body.yaw : body.yaw_rate) = value;
   c.absurd = true;
@@ -138,7 +143,7 @@ void make_absurd_turn(Numbers& n, Case& c, double value) {
 }
 
 /// One number of the request becomes one that nobody meant.
-void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
+void make_absurd(Numbers& n, Numbers& others, Case& c) {
   if (c.tracks.empty()) {
     c.tracks.emplace_back();
     c.track_shapes.emplace_back();
@@ -152,7 +157,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
   geometry::KnownPath& path = c.paths[n.below(c.paths.size())];
   base::TimedPoint& point = path.points[n.below(path.points.size())];
   const auto axis = static_cast<Eigen::Index>(n.below(3));
-  const std::array<double*, 32> fields{&r.position[axis],
+  const std::array<double*, 31> fields{&r.position[axis],
                                        &r.velocity[axis],
                                        &r.target[axis],
                                        &r.volume.min[axis],
@@ -175,7 +180,6 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
                                        &track.position_sigma,
                                        &track.velocity_sigma,
                                        &track.age,
-                                       &track.sudden_change,
                                        &point.position[axis],
                                        &point.t,
                                        &path.offset,
@@ -189,8 +193,8 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
       0.0,  5e-324};
   double& field = *fields[n.below(fields.size())];
   const double value = values[n.below(values.size())];
-  if (of_bodies.one_in(8)) {
-    make_absurd_turn(of_bodies, c, value);
+  if (others.one_in(8)) {
+    make_other_absurd(others, c, value);
     return;
   }
   field = value;
@@ -198,7 +202,7 @@ void make_absurd(Numbers& n, Numbers& of_bodies, Case& c) {
   c.none = std::isnan(field);
 }
 
-Case any_case(Numbers& n, Numbers& of_bodies) {
+Case any_case(Numbers& n, Numbers& others) {
   Case c;
   c.settings = tiny_search(n);
   c.seed = n.below(65536);
@@ -230,8 +234,13 @@ Case any_case(Numbers& n, Numbers& of_bodies) {
   for (std::size_t i = 0; i < paths; ++i) c.paths.push_back(any_path(n, r, 100 + i));
   c.open_loop = n.one_in(64);
   if (c.open_loop) r.velocity.setZero();
-  for (base::Track& track : c.tracks) give_body(of_bodies, track.body, track.radius, c.track_shapes.emplace_back());
-  for (geometry::KnownPath& path : c.paths) give_body(of_bodies, path.body, path.radius, c.path_shapes.emplace_back());
+  for (base::Track& track : c.tracks) give_body(others, track.body, track.radius, c.track_shapes.emplace_back());
+  for (geometry::KnownPath& path : c.paths) give_body(others, path.body, path.radius, c.path_shapes.emplace_back());
+  for (base::Track& track : c.tracks) {
+    if (!others.one_in(4)) continue;
+    track.position_sigma = track.velocity_sigma = 0.0;
+    track.sudden_change = others.in(0.0, 4.0);
+  }
   return c;
 }
 
@@ -473,13 +482,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static base::WorkerPool one(1);
   static base::WorkerPool two(2);
   Numbers n(data, size);
-  Numbers of_bodies = n.others();
-  Case c = any_case(n, of_bodies);
+  Numbers others = n.others();
+  Case c = any_case(n, others);
   if (!c.open_loop && n.one_in(3)) {
     follow(n, c, one);
     if (n.one_in(3)) spoil(n, c);
   }
-  if (n.one_in(6)) make_absurd(n, of_bodies, c);
+  if (n.one_in(6)) make_absurd(n, others, c);
   const verify::Plan plan = make_plan(c, one);
   check_plan(c, plan);
   tally.add(plan, c.open_loop);
