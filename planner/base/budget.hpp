@@ -18,6 +18,8 @@ struct Budget {
 
   /// Whether the clock has a say.
   [[nodiscard]] bool has_deadline() const { return deadline != Time::max(); }
+  /// Whether it repeats a run that is known to have gone so far.
+  [[nodiscard]] bool repeats() const { return stop_after != std::numeric_limits<int>::max(); }
   /// Whether there is a deadline and it has passed. Reads the clock where there is one.
   [[nodiscard]] bool expired() const { return has_deadline() && std::chrono::steady_clock::now() >= deadline; }
 };

@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kLonger = 4.0;         // m, that a solution may be longer than the shortest besides the band
 constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
+constexpr double kMostMeetings = 5000;  // PathProblem::meetings() up to which a search has all its generations
 constexpr double kWaitingHaste = 1e-6;  // times the weights of length and turns, for the same: they choose among equals
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
@@ -53,11 +54,16 @@ void conclude(const PathRequest& request, const PathProblem& problem, verify::Pl
   }
 }
 
-/// With a deadline, as many generations as the last plan's pace lets expect, so that the schedule comes to its end.
-int affordable_generations(const base::Budget& budget, double pace, double share) {
-  if (!budget.has_deadline() || pace <= 0.0) return budget.generations;
-  const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
-  return std::clamp(static_cast<int>(std::min(share * left.count() / pace, 1e6)), 1, budget.generations);
+/// Those of the budget; fewer where so many `meetings` make each of them slow; with a deadline, no more than the last
+/// plan's pace lets expect, so that the schedule comes to its end.
+int affordable_generations(const base::Budget& budget, std::size_t meetings, double pace, double share) {
+  if (budget.repeats()) return budget.generations;
+  double most = budget.generations * std::min(1.0, kMostMeetings / static_cast<double>(1 + meetings));
+  if (budget.has_deadline() && pace > 0.0) {
+    const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
+    most = std::min(most, share * left.count() / pace);
+  }
+  return static_cast<int>(std::clamp(most, 1.0, static_cast<double>(budget.generations)));
 }
 
 /// The farthest that two paths are apart at equal times up to `until`, at the points of the first, m.
@@ -197,7 +203,7 @@ verify::Plan HorizonPlanner::search(PathProblem& problem, const PathRequest& req
                                     base::WorkerPool& pool) {
   initial_ = initial_solutions(problem, request, previous, problem.settings());
   base::Budget affordable = budget;
-  affordable.generations = affordable_generations(budget, pace, settings_.deadline_share);
+  affordable.generations = affordable_generations(budget, problem.meetings(), pace, settings_.deadline_share);
   const auto begun = std::chrono::steady_clock::now();
   const optimizer::Front& front = optimizer_->run(problem, initial_, random.seed, random.stream, affordable, pool);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;

@@ -106,6 +106,8 @@ class NearbyObstacles {
   }
   /// How many tracks and known paths are met in at least one step.
   [[nodiscard]] std::size_t obstacles() const { return obstacles_; }
+  /// The steps in which each of them is met, summed up.
+  [[nodiscard]] std::size_t meetings() const { return met_.size(); }
 
  private:
   /// A number of steps, and where the vehicle is during all of them.

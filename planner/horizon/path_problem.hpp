@@ -108,6 +108,8 @@ class PathProblem final : public optimizer::Problem {
   [[nodiscard]] const base::HorizonSettings& settings() const { return settings_; }
   /// How many obstacles can be met within the horizon.
   [[nodiscard]] std::size_t obstacles() const { return obstacles_.obstacles(); }
+  /// In how many steps each of those that move can be, summed up: what evaluate() takes grows with it.
+  [[nodiscard]] std::size_t meetings() const { return obstacles_.meetings(); }
 
  private:
   static constexpr double kBrakingShare = 0.9;  // of the planned acceleration: the rest makes up for whole steps

@@ -463,6 +463,27 @@ TEST(HorizonPlanner, RepeatsTheSearchWithMoreAccelerationAsFarAsItWent) {
   EXPECT_EQ(again.searches, cut.searches);
 }
 
+// Twice as many meetings take twice the time: half the generations then. What is repeated goes as far as it went.
+TEST(HorizonPlanner, SearchesLessWhereThereIsMoreToMeet) {
+  std::vector<base::Track> tracks = wall();
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const auto n = static_cast<double>(i);
+    tracks.push_back(sphere(1000 + i, {-4 + 0.04 * n, i % 2 == 0 ? 3.0 : -3.0, 2}, {0.01, 0, 0}, 0.1));
+  }
+  const PathRequest r = request(tracks);
+  PathProblem problem{base::HorizonSettings{}};
+  problem.prepare(r);
+  ASSERT_GT(problem.meetings(), 10000U);
+  base::WorkerPool pool(2);
+  HorizonPlanner planner{base::HorizonSettings{}};
+  const verify::Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
+  EXPECT_EQ(plan.schedule, 40 * 5000 / static_cast<int>(1 + problem.meetings()));
+  EXPECT_EQ(plan.generations, plan.schedule);
+  expect_same_path(planner.repeat(r, {}, 1, 0, plan.searches, pool).path, plan.path);
+  const verify::Plan longer = planner.repeat(r, {}, 1, 0, {{{40, 40}, {40, 40}}}, pool);
+  EXPECT_EQ(longer.generations, 40);
+}
+
 // Unobstructed flight is the shortest: where it keeps every clearance there is nothing to search for.
 TEST(HorizonPlanner, SearchesNothingWhereUnobstructedFlightIsTheAnswer) {
   const std::vector<base::Track> far{sphere(1, {8, 9, 2}, Vec3::Zero(), 0.5)};

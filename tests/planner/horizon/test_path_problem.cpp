@@ -681,6 +681,20 @@ TEST(PathProblem, MeasuresTheMotionItself) {
   }
 }
 
+TEST(PathProblem, CountsTheStepsInWhichWhatMovesCanBeMet) {
+  PathProblem problem{base::HorizonSettings{}};
+  PathRequest r = request();
+  const std::vector<base::Track> tracks{sphere({0, 0.6, 2}, {0.01, 0, 0}), sphere({0, -0.6, 2}, {0, 0.01, 0}),
+                                        sphere({100, 0, 2}, {-0.1, 0, 0})};
+  r.tracks = tracks;
+  problem.prepare(r);
+  EXPECT_EQ(problem.meetings(), 2U * static_cast<std::size_t>(problem.steps()));
+  r.tracks = {};
+  r.standing = tracks;
+  problem.prepare(r);
+  EXPECT_EQ(problem.meetings(), 0U);
+}
+
 // 0.1 s steps at 200 m/s: 20 m between two instants, across the path.
 TEST(PathProblem, DoesNotLoseAnObstacleThatIsFarAwayAtEveryInstant) {
   PathProblem problem{base::HorizonSettings{}};
