@@ -67,7 +67,7 @@ struct HorizonSettings {
   int slaves = 2;                    ///< m, as OptimizerSettings::slaves
   int sharing = 3;                   ///< l, as OptimizerSettings::sharing
   int population = 24;               ///< n_pop, as OptimizerSettings::population
-  int generations = 200;             ///< budget of one plan in virtual time, and the upper bound in real time
+  int generations = 200;             ///< of one plan in virtual time, at most, and in real time
   double deadline_ms = 6.0;          ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
   double back_range = 2.0;           ///< how far they may fall back behind the start
