@@ -20,8 +20,8 @@ namespace jink::planner::horizon {
 namespace {
 
 constexpr double kLonger = 4.0;         // m, that a solution may be longer than the shortest besides the band
-constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
 constexpr double kMostMeetings = 5000;  // PathProblem::meetings() up to which a search has all its generations
+constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
 constexpr double kWaitingHaste = 1e-6;  // times the weights of length and turns, for the same: they choose among equals
 
 base::OptimizerSettings sized(base::OptimizerSettings o, const base::HorizonSettings& s) {
@@ -63,7 +63,7 @@ int affordable_generations(const base::Budget& budget, std::size_t meetings, dou
     const std::chrono::duration<double> left = budget.deadline - std::chrono::steady_clock::now();
     most = std::min(most, share * left.count() / pace);
   }
-  return static_cast<int>(std::clamp(most, 1.0, static_cast<double>(budget.generations)));
+  return static_cast<int>(std::min<double>(budget.generations, std::max(1.0, most)));
 }
 
 /// The farthest that two paths are apart at equal times up to `until`, at the points of the first, m.

@@ -40,9 +40,9 @@ class HorizonPlanner {
   /// Plans from `request` on. `previous` is the plan now flown with its times shifted so that 0 is this plan's start;
   /// empty: none, as one that does not begin in the request's state (continues() in path_check.hpp). It seeds the
   /// search, and it is kept where it is still free and a new plan is neither clearly better nor, along the same way,
-  /// shorter and no less clear; where it asks for more
-  /// than 1.1 times the vehicle's limits, only if no new plan is free. `number` counts the plans of a flight and names
-  /// the random stream.
+  /// shorter and no less clear; where it asks for more than 1.1 times the vehicle's limits, only if no new plan is
+  /// free. `number` counts the plans of a flight and names the random stream. Among very many that move a search has
+  /// fewer generations than `budget`.
   ///
   /// How far it looks ahead and aside is extent_of()'s choice. The returned path starts at time 0 in the request's
   /// state and leads to the target. Its status says how much of it was verified free in continuous time, apart from the
