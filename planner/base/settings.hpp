@@ -71,7 +71,7 @@ struct HorizonSettings {
   double deadline_ms = 6.0;          ///< budget of one plan in real time
   double lateral_range = 6.0;        ///< how far waypoints may leave the straight line
   double back_range = 2.0;           ///< how far they may fall back behind the start
-  double brief_time = 3.0;           ///< looked ahead where all that is met is passed by then
+  double brief_time = 2.0;           ///< looked ahead where the way leads on near by
   double far_time = 9.0;             ///< looked ahead where nothing leads on within lateral_range
   double far_range = 12.0;           ///< how far waypoints may leave the straight line then
   double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them
@@ -91,7 +91,7 @@ struct HorizonSettings {
   double sudden_change = 1.5;        ///< by which a track's velocity may be another at once, at most, m/s
   double acceleration_trust = 0.7;   ///< how long a track's measured acceleration is believed to last
   double clearance_limit = 0.8;      ///< the most that uncertainty may ask for on top of the margin
-  double time_weight = 0.5;          ///< of lost time, as length at cruise speed, in the length objective
+  double time_weight = 3.0;          ///< of lost time, as length at cruise speed, in the length objective
   double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
   double hurry = 4.0;                ///< times time_weight, for a vehicle that is stuck
   double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this share and 4 m are not chosen
@@ -127,10 +127,16 @@ struct HorizonSettings {
   /// How far a plan looks ahead, in whole steps: `time`, rounded.
   [[nodiscard]] double horizon() const { return waypoints * leg(); }
 
-  /// The same settings, for where all that is met is passed soon.
+  /// The same settings, for where the way leads on near by.
   [[nodiscard]] HorizonSettings for_brief() const {
     HorizonSettings result = *this;
     result.time = std::min(time, brief_time);
+    return result;
+  }
+  /// The same settings, for motion that is known as far ahead as is looked: never brief.
+  [[nodiscard]] HorizonSettings for_known_motion() const {
+    HorizonSettings result = *this;
+    result.brief_time = time;
     return result;
   }
   /// The same settings, for where the way is blocked. With steps so fine that far_time has more than kMostSteps it is

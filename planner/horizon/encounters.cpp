@@ -12,25 +12,10 @@
 namespace jink::planner::horizon {
 namespace {
 
-/// Whether, from settings.brief_time on, neither unobstructed flight nor one up to half as fast is near anything.
-bool passes_soon(const PathRequest& request, const base::TimedPath& unobstructed, double until,
-                 const base::HorizonSettings& settings) {
-  std::vector<Vec3> slow;
-  for (const base::TimedPoint& point : unobstructed) {
-    slow.push_back(base::sample(unobstructed, 0.5 * point.t).position);
-  }
-  bool passes = true;
-  for_each_obstacle(request, first_clearance(request, settings), [&](const auto& obstacle) {
-    for (std::size_t i = 0; passes && i < slow.size(); ++i) {
-      const base::TimedPoint& point = unobstructed[i];
-      if (point.t > std::min(until, obstacle.until)) break;
-      if (point.t <= settings.brief_time) continue;
-      const Vec3 there = obstacle.position(point.t);
-      const double squared = geometry::swept_distance_squared(slow[i], point.position, there, there);
-      passes = squared >= obstacle.wanted * obstacle.wanted;
-    }
-  });
-  return passes;
+/// How far aside a vehicle can be that much later: from rest to rest, and no more than that share of the usual, m.
+double aside_within(double time, const PathRequest& request, const base::HorizonSettings& settings) {
+  const double acceleration = settings.planned_acceleration(request.vehicle.max_acceleration);
+  return std::min(settings.lateral_range * time / settings.time, 0.25 * acceleration * time * time);
 }
 
 /// Unobstructed flight and a sphere, where they are nearest.
@@ -87,23 +72,28 @@ std::vector<Encounter> encounters(const PathRequest& request, const base::TimedP
 
 Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,
                  const base::HorizonSettings& settings) {
-  const double until = settings.horizon();
-  const std::vector<Encounter> met = encounters(request, unobstructed, until, settings);
-  if (met.empty()) return Extent::kUsual;
-  if (settings.far_range > settings.lateral_range || settings.far_time > settings.time) {
-    const geometry::PathFrame frame(request.position, request.target);
-    const Vec3 centre = beside(unobstructed, frame, met.front());
-    const auto leads_on = [&](const base::HorizonSettings& within) {
-      const std::vector<double> times = passages(within, met.front().t);
-      return std::any_of(times.begin(), times.end(), [&](double t) {
-        const std::vector<Gap> gaps = find_gaps(request, frame, centre, t, within, 1);
-        return !gaps.empty() && gaps.front().lacking <= 0.0;
-      });
-    };
-    if (!leads_on(settings) && leads_on(settings.for_far())) return Extent::kFar;
-  }
-  if (settings.brief_time < until && passes_soon(request, unobstructed, until, settings)) return Extent::kBrief;
-  return Extent::kUsual;
+  base::HorizonSettings near = settings.for_brief();
+  const Vec3 soon = base::sample(unobstructed, near.horizon()).position;
+  const bool is_led = !request.way.empty() && !request.visit;  // to a place that is passed
+  const bool stays = !is_led && (soon - request.target).norm() <= settings.near_target;
+  const Extent least = stays || request.stuck ? Extent::kUsual : Extent::kBrief;
+  const std::vector<Encounter> met = encounters(request, unobstructed, settings.horizon(), settings);
+  if (met.empty()) return least;
+  const geometry::PathFrame frame(request.position, request.target);
+  const Vec3 centre = beside(unobstructed, frame, met.front());
+  const auto leads_on = [&](const base::HorizonSettings& within) {
+    const std::vector<double> times = passages(within, met.front().t);
+    return std::any_of(times.begin(), times.end(), [&](double t) {
+      const std::vector<Gap> gaps = find_gaps(request, frame, centre, t, within, 1);
+      return !gaps.empty() && gaps.front().lacking <= 0.0 &&
+             (gaps.front().position - centre).norm() <= within.lateral_range;
+    });
+  };
+  near.lateral_range = aside_within(near.time, request, settings);
+  if (met.front().t > near.horizon()) near.time = settings.time;
+  if (least == Extent::kBrief && leads_on(near)) return Extent::kBrief;
+  if (leads_on(settings)) return Extent::kUsual;
+  return leads_on(settings.for_far()) ? Extent::kFar : Extent::kUsual;
 }
 
 }  // namespace jink::planner::horizon

@@ -44,10 +44,11 @@ enum class Extent {
   kFar     ///< HorizonSettings::for_far()
 };
 
-/// How far the way on asks to be looked at. kFar: where it is met first no place within settings.lateral_range keeps
-/// clear, at that time or one of the next waypoints', and one within settings.far_range does. kBrief: all that is met
-/// within the horizon is passed within settings.brief_time, by flights down to half as fast too. `unobstructed` as for
-/// encounters(), up to the usual horizon. O(obstacles · (points + places)), allocates.
+/// How far the way on asks to be looked at: the shortest horizon in which it leads on. kBrief: where it is met first, a
+/// place keeps clear so near by that the vehicle can be there within settings.brief_time, at one of the next waypoints'
+/// times; not where it is at the target by then, since it is to stay there, nor where it is stuck. kUsual: one within
+/// settings.lateral_range does. kFar: one within settings.far_range does. Closed all the way it is kUsual.
+/// `unobstructed` as for encounters(), up to the usual horizon. O(obstacles · (points + places)), allocates.
 Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,
                  const base::HorizonSettings& settings);
 

@@ -13,14 +13,14 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kPatience = 2.0;  // s, that may be lost on a way before others are looked at
-constexpr double kHeld = 4.0;      // m, from the vehicle, that its plan leads at most meanwhile
-constexpr double kBeside = 2.0;    // m, from there, that something comes
-constexpr double kMoves = 0.1;     // m, by which that is elsewhere before or after
-constexpr double kLookStep = 0.5;  // s
-constexpr double kBlocked = 0.5;   // s, for which that lasts before
-constexpr double kRegret = 1.0;    // s, by which another arrives earlier to be taken
-constexpr double kWait = 1.0;      // s, that a way in time waits at one place; who waits less follows something
+constexpr double kPatience = 1.0 / 3;  // of the horizon, that may be lost on a way before others are looked at
+constexpr double kHeld = 4.0;          // m, from the vehicle, that its plan leads at most meanwhile
+constexpr double kBeside = 2.0;        // m, from there, that something comes
+constexpr double kMoves = 0.1;         // m, by which that is elsewhere before or after
+constexpr double kLookStep = 0.5;      // s
+constexpr double kBlocked = 0.5;       // s, for which that lasts before
+constexpr double kRegret = 1.0;        // s, by which another arrives earlier to be taken
+constexpr double kWait = 1.0;          // s, that a way in time waits at one place; who waits less follows something
 
 /// Where it is known to lead to.
 base::TimedPoint known_end(const verify::Plan& plan) {
@@ -141,8 +141,9 @@ verify::Plan GuidedPlanner::plan(PathRequest& request, double now, const MapPlac
   double earliest = arrival(best, way, cruise);
   // Farther ahead a narrow place looks closed, until the margin gives way there.
   const Vec3 held_at = known_end(best).position;
-  const bool loses = earliest > left_along(way, given.position) / cruise + kPatience;
-  if (!loses || (held_at - given.position).norm() >= kHeld || !is_crossed(request, held_at, best.horizon)) {
+  const bool loses = earliest > left_along(way, given.position) / cruise + kPatience * best.horizon;
+  if (!loses || (held_at - given.position).norm() >= kHeld ||
+      !is_crossed(request, held_at, planner_.settings().horizon())) {
     if (blocked_since_) guide_.forget_others();
     blocked_since_.reset();
     return best;

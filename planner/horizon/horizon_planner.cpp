@@ -19,7 +19,7 @@
 namespace jink::planner::horizon {
 namespace {
 
-constexpr double kLonger = 4.0;         // m, that a solution may be longer than the shortest besides the band
+constexpr double kLonger = 8.0;         // m, that a solution may be longer than the shortest besides the band
 constexpr double kMostMeetings = 5000;  // PathProblem::meetings() up to which a search has all its generations
 constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
 constexpr double kWaitingHaste = 1e-6;  // times the weights of length and turns, for the same: they choose among equals
@@ -132,12 +132,14 @@ verify::Plan HorizonPlanner::make(const PathRequest& asked, const base::TimedPat
   if (!is_valid(asked)) return {};
   PathRequest request = asked;
   weights_ = {settings_.weight_length, settings_.weight_steering, settings_.weight_clearance};
+  longer_ = kLonger;
   if (makes_room(asked, settings_)) {
     // To be there or nearer helps nothing: room comes before all else, since who is there may set off or turn.
     request.stuck = false;
     request.sudden_change = kWaitingRoom * asked.sudden_change;
     weights_[0] *= kWaitingHaste;
     weights_[1] *= kWaitingHaste;
+    longer_ = base::kInfinity;
   } else if (asked.stuck) {
     weights_ = {1.0, 0.0, 0.0};  // what gets on, not what turns least: that waits
   }
@@ -228,7 +230,7 @@ std::vector<optimizer::Cost> HorizonPlanner::quantized(std::span<const optimizer
   std::vector<optimizer::Cost> result(costs.begin(), costs.end());
   for (optimizer::Cost& cost : result) {
     if (cost.violation == 0.0)
-      cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest - kLonger);
+      cost.violation = std::max(0.0, cost.f[0] - (1.0 + settings_.length_band) * shortest - longer_);
   }
   return result;
 }

@@ -98,6 +98,7 @@ class HorizonPlanner {
   const optimizer::Front* front_ = nullptr;  // of the last search; the optimizer's
   std::vector<double> initial_;
   std::array<double, 3> weights_{};  // of the objectives, in the choice for the present request
+  double longer_ = 0.0;              // m, that it may be longer than the shortest besides the band
 };
 
 }  // namespace jink::planner::horizon

@@ -214,7 +214,7 @@ verify::Plan plan_open_loop(const base::HorizonSettings& settings, const base::O
     plan.status = verify::PlanStatus::kStartBlocked;
     return plan;
   }
-  HorizonPlanner planner(settings, optimizer, make);
+  HorizonPlanner planner(settings.for_known_motion(), optimizer, make);
   verify::Plan plan = attempt(planner, request, seed, budget, pool);
   if (plan.status == verify::PlanStatus::kInvalid) return plan;
   pull_tight(request, settings, plan);

@@ -403,7 +403,7 @@ TEST(HorizonPlannerAmongKnownPaths, KeepsClearOfOneThatTurns) {
   const KnownPath path = weaving();
   horizon::PathRequest r = request();
   base::WorkerPool pool(2);
-  horizon::HorizonPlanner planner{base::HorizonSettings{}};
+  horizon::HorizonPlanner planner{base::HorizonSettings{}.for_known_motion()};
   const base::Budget budget{base::HorizonSettings{}.generations, base::Budget::Time::max()};
   const verify::Plan straight_on = planner.plan(r, {}, 1, 0, budget, pool);
   ASSERT_FALSE(

@@ -64,10 +64,39 @@ TEST(Encounters, AreTheFirstInOrderOfTime) {
   EXPECT_EQ(encounters(level_flight(tracks), level(), 2.5, {}).size(), 1U);
 }
 
-TEST(Extents, AreUsualWhereTheWayLeadsOnNearBy) {
-  EXPECT_EQ(extent({ball_at({15, 0, kUp})}), Extent::kUsual);
+TEST(Extents, AreBriefWhereTheWayLeadsOnNearBy) {
+  EXPECT_EQ(extent({}), Extent::kBrief);
+  EXPECT_EQ(extent({ball_at({5, 0, kUp})}), Extent::kBrief);
+  EXPECT_EQ(extent({ball_at({15, 0, kUp})}), Extent::kBrief);  // met after brief_time
+  EXPECT_EQ(extent({ball_at({3, -3, kUp}, {0, 3, 0})}), Extent::kBrief);
+  // As of who cannot be aside in time: no farther than a quarter of acceleration times brief_time squared.
+  const std::vector<base::Track> tracks{ball_at({5, 0, kUp})};
+  PathRequest sluggish = level_flight(tracks);
+  sluggish.vehicle.max_acceleration = 1.0;
+  EXPECT_EQ(extent_of(sluggish, level(), {}), Extent::kUsual);
+}
+
+TEST(Extents, AreUsualOfWhoIsStuckOrToStayWhereItSoonIs) {
+  const std::vector<base::Track> tracks{ball_at({5, 0, kUp})};
+  PathRequest stuck = level_flight(tracks);
+  stuck.stuck = true;
+  EXPECT_EQ(extent_of(stuck, level(), {}), Extent::kUsual);
+  PathRequest arrives = level_flight(tracks);
+  arrives.target.x() = 5.5;  // at 3 m/s
+  EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kUsual);
+  arrives.way = {arrives.target};  // a place that is passed
+  EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kBrief);
+  arrives.visit = true;
+  EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kUsual);
+}
+
+// Nobody flies far aside in a short horizon: to wait would be cheaper.
+TEST(Extents, AreUsualWhereItLeadsOnFartherAside) {
+  EXPECT_EQ(extent(wall_of(2.0)), Extent::kUsual);
   EXPECT_EQ(extent(wall_of(3.0)), Extent::kUsual);
-  EXPECT_EQ(extent({}), Extent::kUsual);
+  std::vector<base::Track> later = wall_of(3.0);
+  for (base::Track& track : later) track.position.x() += 6.0;
+  EXPECT_EQ(extent(later), Extent::kUsual);
 }
 
 TEST(Extents, AreFarWhereItLeadsOnFarAsideAlone) {
@@ -76,20 +105,6 @@ TEST(Extents, AreFarWhereItLeadsOnFarAsideAlone) {
   narrow.far_range = narrow.lateral_range;
   EXPECT_EQ(extent(wall_of(7.0), narrow), Extent::kUsual);
   EXPECT_EQ(extent(wall_of(19.9)), Extent::kUsual);  // closed: to look far would show nothing more
-}
-
-TEST(Extents, AreBriefWhereAllIsPassedSoon) {
-  const base::Track crossing = ball_at({3, -3, kUp}, {0, 3, 0});
-  EXPECT_EQ(extent({crossing}), Extent::kBrief);
-  EXPECT_EQ(extent({crossing, ball_at({15, 0, kUp})}), Extent::kUsual);
-  base::HorizonSettings long_sighted;
-  long_sighted.brief_time = long_sighted.time;
-  EXPECT_EQ(extent({crossing}, long_sighted), Extent::kUsual);
-}
-
-// Met within a second by flight at cruise speed, and by a slower one for as long as that flies behind it.
-TEST(Extents, AreUsualBehindWhatIsOvertaken) {
-  EXPECT_EQ(extent({ball_at({3, 0, kUp}, {1.5, 0, 0})}), Extent::kUsual);
 }
 
 TEST(Extents, OfFineStepsAreNoMoreThanTheMostSteps) {

@@ -155,7 +155,8 @@ TEST(Openings, AreWhereTheWayLeadsOn) {
   EXPECT_FALSE(on({}));
 }
 
-// To wait for a wall to go away is for ever cheaper than the way to a hole far aside, until waiting has not helped.
+// With little weight of lost time, to wait for a wall to go away is for ever cheaper than the way to a hole far aside,
+// until waiting has not helped.
 TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   const std::vector<base::Track> tracks = wall({{2.6, 4.5}});
   PathRequest r = before_the_wall(tracks);
@@ -163,7 +164,12 @@ TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   r.velocity = Vec3::Zero();
   r.target = {11, -2.8, 1.5};
   r.margin = base::HorizonSettings{}.margin;
-  HorizonPlanner planner{base::HorizonSettings{}};
+  base::HorizonSettings settings = base::HorizonSettings{}.for_known_motion();
+  settings.far_range = settings.lateral_range;
+  settings.far_time = settings.time;
+  settings.time_weight = 0.5;
+  settings.hurry = 4.0;
+  HorizonPlanner planner{settings};
   base::WorkerPool pool(2);
   const auto reaches = [&] {
     const verify::Plan plan = planner.plan(r, {}, 1, 0, {base::HorizonSettings{}.generations}, pool);

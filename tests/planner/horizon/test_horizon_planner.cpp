@@ -39,6 +39,9 @@ PathRequest request(const std::vector<base::Track>& tracks) {
   return r;
 }
 
+/// That look `time` ahead in every case.
+const base::HorizonSettings kLongSighted = base::HorizonSettings{}.for_known_motion();
+
 /// Spheres of radius 1 side by side across the straight line at x = 8, with a way round at the sides alone.
 std::vector<base::Track> wall() {
   std::vector<base::Track> tracks;
@@ -50,7 +53,7 @@ std::vector<base::Track> wall() {
 }
 
 verify::Plan plan_once(const PathRequest& r, int threads = 2, const base::TimedPath& previous = {},
-                       std::uint64_t seed = 1, const base::HorizonSettings& settings = {}) {
+                       std::uint64_t seed = 1, const base::HorizonSettings& settings = kLongSighted) {
   base::WorkerPool pool(threads);
   HorizonPlanner planner(settings);
   return planner.plan(r, previous, seed, 0, {settings.generations, base::Budget::Time::max()}, pool);
@@ -97,6 +100,8 @@ TEST(HorizonPlanner, PlansAroundWhatBlocksTheStraightLine) {
       EXPECT_EQ(plan.path.front().t, 0.0);
       EXPECT_EQ(plan.path.back().position, r.target) << c.name;
       EXPECT_FALSE(plan.kept_previous);
+      const verify::Plan shorter = plan_once(r, 2, {}, seed, base::HorizonSettings{});
+      EXPECT_TRUE(check(r, shorter.path, shorter.horizon).free()) << c.name;
     }
   }
 }
@@ -155,7 +160,7 @@ TEST(HorizonPlanner, LeavesTheVolumesBoundsWhereARequestAsksForClearance) {
 }
 
 // Behind something slow whose place is known to 0.3 m: with a band of a share of the length alone, which is narrow near
-// the target, the mean was 0.51 m.
+// the target, the mean was 0.48 m.
 TEST(HorizonPlanner, GivesRoomToWhatItFollowsNearTheTarget) {
   struct Following {
     Vec3 ahead;
@@ -173,7 +178,7 @@ TEST(HorizonPlanner, GivesRoomToWhatItFollowsNearTheTarget) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed, ++plans)
       sum += plan_once(r, 2, {}, seed).verification.min_clearance;
   }
-  EXPECT_GT(sum / plans, 0.62);
+  EXPECT_GT(sum / plans, 0.59);
 }
 
 TEST(HorizonPlanner, SearchesForAllItsGenerations) {
@@ -201,7 +206,7 @@ TEST(HorizonPlanner, SameBitsForAnyNumberOfThreads) {
 TEST(HorizonPlanner, DoesNotDependOnEarlierPlans) {
   const std::vector<Case> cases = blocked_lines();
   base::WorkerPool pool(1);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   const base::Budget budget{base::HorizonSettings{}.generations, base::Budget::Time::max()};
   const PathRequest wall_request = request(cases[2].tracks);
   const PathRequest crossing_request = request(cases[1].tracks);
@@ -232,7 +237,7 @@ TEST(HorizonPlanner, HoldsOnToTheWayItHasBegun) {
 TEST(HorizonPlanner, GetsBetterAlongTheWayItHasBegun) {
   const std::vector<base::Track> tracks{sphere(1, {10, 0.4, 2}, Vec3::Zero())};
   const PathRequest r = request(tracks);
-  base::HorizonSettings hasty;
+  base::HorizonSettings hasty = kLongSighted;
   hasty.generations = 2;
   PathProblem problem{base::HorizonSettings{}};
   problem.prepare(r);
@@ -349,7 +354,7 @@ TEST(HorizonPlanner, KeepsAWayPastWhereTheSearchFoundOnlyToWait) {
   }
   past.push_back({11.0, r.target, Vec3::Zero(), Vec3::Zero()});
   ASSERT_GE(check(r, past).min_clearance, r.margin);
-  base::HorizonSettings narrow;
+  base::HorizonSettings narrow = kLongSighted;
   narrow.lateral_range = narrow.far_range = 0.5;
   narrow.weight_clearance = 1.0;
   narrow.weight_length = 0.1;
@@ -369,7 +374,7 @@ TEST(HorizonPlanner, UsesMoreAccelerationWhereNothingElseHelps) {
   const verify::Plan plan = plan_once(r);
   EXPECT_TRUE(plan.emergency);
   EXPECT_TRUE(check(r, plan.path, 6.0).free());
-  base::HorizonSettings calm;
+  base::HorizonSettings calm = kLongSighted;
   calm.emergency_share = calm.acceleration_share;
   base::WorkerPool pool(2);
   const verify::Plan without = HorizonPlanner(calm).plan(r, {}, 1, 0, {calm.generations}, pool);
@@ -413,7 +418,7 @@ TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
-  base::HorizonSettings s;
+  base::HorizonSettings s = kLongSighted;
   s.population = 1;
   EXPECT_THROW(HorizonPlanner{s}, std::invalid_argument);
 }
@@ -422,7 +427,7 @@ TEST(HorizonPlanner, ExpiredDeadlineStillGivesAPlan) {
   const std::vector<base::Track> tracks{sphere(1, {10, 0, 2}, Vec3::Zero(), 0.5)};
   const PathRequest r = request(tracks);
   base::WorkerPool pool(1);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   const verify::Plan plan = planner.plan(r, {}, 1, 0, {40, base::Budget::Time::min()}, pool);
   EXPECT_TRUE(plan.deadline_reached);
   EXPECT_EQ(plan.schedule, 40);
@@ -435,7 +440,7 @@ TEST(HorizonPlanner, PlanUnderADeadlineIsRepeatedByItsSchedule) {
   const std::vector<base::Track> tracks = wall();
   const PathRequest r = request(tracks);
   base::WorkerPool pool(2);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   planner.plan(r, {}, 1, 0, {40}, pool);
   const auto soon = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
   const verify::Plan cut = planner.plan(r, {}, 1, 1, {1000000, soon}, pool);
@@ -475,7 +480,7 @@ TEST(HorizonPlanner, SearchesLessWhereThereIsMoreToMeet) {
   problem.prepare(r);
   ASSERT_GT(problem.meetings(), 10000U);
   base::WorkerPool pool(2);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   const verify::Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
   EXPECT_EQ(plan.schedule, 40 * 5000 / static_cast<int>(1 + problem.meetings()));
   EXPECT_EQ(plan.generations, plan.schedule);
@@ -489,7 +494,7 @@ TEST(HorizonPlanner, SearchesNothingWhereUnobstructedFlightIsTheAnswer) {
   const std::vector<base::Track> far{sphere(1, {8, 9, 2}, Vec3::Zero(), 0.5)};
   const PathRequest r = request(far);
   base::WorkerPool pool(1);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   const verify::Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
   EXPECT_EQ(plan.status, verify::PlanStatus::kReaches);
   EXPECT_EQ(plan.evaluations, 0);
@@ -502,7 +507,7 @@ TEST(HorizonPlanner, KeepsWithoutASearchWhatNoSearchCouldReplace) {
   const std::vector<base::Track> tracks{sphere(1, {10, 0.9, 2}, Vec3::Zero(), 0.4)};
   const PathRequest r = request(tracks);
   base::WorkerPool pool(1);
-  HorizonPlanner planner{base::HorizonSettings{}};
+  HorizonPlanner planner{kLongSighted};
   const verify::Plan first = planner.plan(r, {}, 1, 0, {40}, pool);
   ASSERT_GT(first.evaluations, 0);
   ASSERT_EQ(first.status, verify::PlanStatus::kReaches);

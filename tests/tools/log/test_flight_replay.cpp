@@ -176,8 +176,8 @@ class RealTimePlans {
   planner::verify::Plan make(bridge::companion::PlanJob job, std::chrono::microseconds time) {
     bridge::companion::PlanResult result;
     result.job = std::move(job);
-    result.job.request.tracks = result.job.tracks;
-    result.job.request.paths = result.job.paths;
+    const bridge::prediction::Obstacles obstacles = bridge::companion::obstacles_of(result.job, settings_.horizon);
+    bridge::companion::set_obstacles(result.job, obstacles);
     const planner::base::Budget budget{settings_.horizon.generations, std::chrono::steady_clock::now() + time};
     result.plan = planner_.plan(result.job.request, result.job.previous, 9, result.job.number, budget, pool_);
     log_.on_plan(result.job.start, result);
