@@ -94,7 +94,7 @@ struct HorizonSettings {
   double time_weight = 3.0;          ///< of lost time, as length at cruise speed, in the length objective
   double deviation_weight = 0.3;     ///< of the mean distance from unobstructed flight, in the length objective
   double hurry = 4.0;                ///< times time_weight, for a vehicle that is stuck
-  double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this share and 4 m are not chosen
+  double length_band = 0.1;    ///< solutions longer than the shortest feasible one by this share and 8 m are not chosen
   double weight_length = 0.6;  ///< of f1 in the modified TOPSIS
   double weight_steering = 0.05;   ///< of f2
   double weight_clearance = 0.35;  ///< of f3

@@ -76,9 +76,9 @@ Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed
   const Vec3 soon = base::sample(unobstructed, near.horizon()).position;
   const bool is_led = !request.way.empty() && !request.visit;  // to a place that is passed
   const bool stays = !is_led && (soon - request.target).norm() <= settings.near_target;
-  const Extent least = stays || request.stuck ? Extent::kUsual : Extent::kBrief;
+  const bool brief = near.time < settings.time && !stays && !request.stuck;
   const std::vector<Encounter> met = encounters(request, unobstructed, settings.horizon(), settings);
-  if (met.empty()) return least;
+  if (met.empty()) return brief ? Extent::kBrief : Extent::kUsual;
   const geometry::PathFrame frame(request.position, request.target);
   const Vec3 centre = beside(unobstructed, frame, met.front());
   const auto leads_on = [&](const base::HorizonSettings& within) {
@@ -91,7 +91,7 @@ Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed
   };
   near.lateral_range = aside_within(near.time, request, settings);
   if (met.front().t > near.horizon()) near.time = settings.time;
-  if (least == Extent::kBrief && leads_on(near)) return Extent::kBrief;
+  if (brief && leads_on(near)) return Extent::kBrief;
   if (leads_on(settings)) return Extent::kUsual;
   return leads_on(settings.for_far()) ? Extent::kFar : Extent::kUsual;
 }

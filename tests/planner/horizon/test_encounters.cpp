@@ -74,6 +74,9 @@ TEST(Extents, AreBriefWhereTheWayLeadsOnNearBy) {
   PathRequest sluggish = level_flight(tracks);
   sluggish.vehicle.max_acceleration = 1.0;
   EXPECT_EQ(extent_of(sluggish, level(), {}), Extent::kUsual);
+  const base::HorizonSettings long_sighted = base::HorizonSettings{}.for_known_motion();
+  EXPECT_EQ(extent({ball_at({5, 0, kUp})}, long_sighted), Extent::kUsual);
+  EXPECT_EQ(extent({}, long_sighted), Extent::kUsual);
 }
 
 TEST(Extents, AreUsualOfWhoIsStuckOrToStayWhereItSoonIs) {

@@ -168,7 +168,6 @@ TEST(Openings, AreTakenByAVehicleThatIsStuck) {
   settings.far_range = settings.lateral_range;
   settings.far_time = settings.time;
   settings.time_weight = 0.5;
-  settings.hurry = 4.0;
   HorizonPlanner planner{settings};
   base::WorkerPool pool(2);
   const auto reaches = [&] {

@@ -418,7 +418,7 @@ TEST(HorizonPlanner, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST(HorizonPlanner, RefusesSettingsThatPmomvoRefuses) {
-  base::HorizonSettings s = kLongSighted;
+  base::HorizonSettings s;
   s.population = 1;
   EXPECT_THROW(HorizonPlanner{s}, std::invalid_argument);
 }
