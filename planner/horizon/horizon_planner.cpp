@@ -20,7 +20,7 @@ namespace jink::planner::horizon {
 namespace {
 
 constexpr double kLonger = 8.0;         // m, that a solution may be longer than the shortest besides the band
-constexpr double kMostMeetings = 5000;  // PathProblem::meetings() up to which a search has all its generations
+constexpr double kMostMeetings = 500;   // PathProblem::meetings() up to which a search has all its generations
 constexpr double kWaitingRoom = 2.0;    // times sudden_change, for who waits before a taken target
 constexpr double kWaitingHaste = 1e-6;  // times the weights of length and turns, for the same: they choose among equals
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "planner/horizon/each_obstacle.hpp"
@@ -13,9 +14,16 @@ namespace {
 constexpr double kEase = 0.7;           // of the cruise speed
 constexpr int kStartInstants = 3;       // in which the vehicle may be where it is
 constexpr double kShortestWait = 1e-6;  // s: what is less is rounding
+constexpr double kRounding = 1e-9;      // m, far above it
 constexpr double kThere = 0.9;          // cells from the target, within which a place is it
 
 }  // namespace
+
+// Instants after one at which it is `farther` than it may be, m, in which it is so still.
+std::size_t SafeIntervalSearch::Mover::instants_until_near(double farther) const {
+  const double sure = farther - kRounding;
+  return sure < kInstants * farthest ? static_cast<std::size_t>(std::max(0.0, sure / farthest)) : kInstants;
+}
 
 // What rests is placed once.
 void SafeIntervalSearch::place_obstacles(const PathRequest& request, double begin) {
@@ -29,7 +37,9 @@ void SafeIntervalSearch::place_obstacles(const PathRequest& request, double begi
     mover.kept = obstacle.kept;
     mover.rests = obstacle.body.yaw_rate == 0.0 && obstacle.until == base::kInfinity;
     for (int i = 0; i < kInstants && begin + i * kInstant <= obstacle.until; ++i) {
+      const Vec3 before = mover.where.empty() ? obstacle.position(begin) : mover.where.back();
       mover.where.push_back(obstacle.position(begin + i * kInstant));
+      mover.farthest = std::max(mover.farthest, (mover.where.back() - before).norm());
       mover.rests = mover.rests && mover.where.back() == mover.where.front();
     }
     if (mover.where.empty()) return;
@@ -49,11 +59,17 @@ SafeIntervalSearch::Instants SafeIntervalSearch::free_at(const Vec3& position, c
   Instants taken = 0;
   for (Mover& mover : movers_) {
     if (!mover.box.contains(position)) continue;
-    for (std::size_t i = mover.solids.size(); i < mover.where.size(); ++i)
-      mover.solids.emplace_back(mover.body, mover.where[i], static_cast<double>(i) * kInstant);
     for (std::size_t i = 0; i < mover.where.size(); ++i) {
-      if ((position - mover.where[i]).squaredNorm() >= mover.wanted * mover.wanted) continue;
-      if (!mover.solids[i].is_none() && mover.solids[i].distance(position) >= mover.kept) continue;
+      const double squared = (position - mover.where[i]).squaredNorm();
+      if (squared >= mover.wanted * mover.wanted) {
+        i += mover.instants_until_near(std::sqrt(squared) - mover.wanted);
+        continue;
+      }
+      if (mover.body.solid != nullptr) {
+        for (std::size_t n = mover.solids.size(); n < mover.where.size(); ++n)
+          mover.solids.emplace_back(mover.body, mover.where[n], static_cast<double>(n) * kInstant);
+        if (mover.solids[i].distance(position) >= mover.kept) continue;
+      }
       if (mover.rests) return 0;
       taken |= Instants{1} << i;
     }

@@ -31,7 +31,7 @@ class SafeIntervalSearch {
   static constexpr int kInstants = 64;                              ///< of them
   static constexpr double kLookAhead = (kInstants - 1) * kInstant;  ///< s; what is free then stays so
   static constexpr std::size_t kMostPlaces = 2500;                  ///< of the grid, that are looked at
-  static constexpr std::size_t kMostTests = 250'000;                ///< of a place and an obstacle
+  static constexpr std::size_t kMostTests = 100'000;                ///< of a place and an obstacle
 
   /// The way that is first at the request's target and keeps the margin, from where the vehicle is at a time of the
   /// request: on a grid of `cell` m that begins there, at 0.7 of its cruise speed, with stops and turns that take no
@@ -49,7 +49,10 @@ class SafeIntervalSearch {
     base::Body body;                  // at the first instant
     double wanted = 0.0;              // from its centre, m
     double kept = 0.0;                // from its surface, m
+    double farthest = 0.0;            // from one instant to the next, m
     bool rests = false;
+
+    [[nodiscard]] std::size_t instants_until_near(double farther) const;
   };
   /// One of the grid, and its states.
   struct Place {

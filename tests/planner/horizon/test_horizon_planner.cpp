@@ -481,8 +481,8 @@ TEST(HorizonPlanner, SearchesLessWhereThereIsMoreToMeet) {
   ASSERT_GT(problem.meetings(), 10000U);
   base::WorkerPool pool(2);
   HorizonPlanner planner{kLongSighted};
-  const verify::Plan plan = planner.plan(r, {}, 1, 0, {40}, pool);
-  EXPECT_EQ(plan.schedule, 40 * 5000 / static_cast<int>(1 + problem.meetings()));
+  const verify::Plan plan = planner.plan(r, {}, 1, 0, {400}, pool);
+  EXPECT_EQ(plan.schedule, 400 * 500 / static_cast<int>(1 + problem.meetings()));
   EXPECT_EQ(plan.generations, plan.schedule);
   expect_same_path(planner.repeat(r, {}, 1, 0, plan.searches, pool).path, plan.path);
   const verify::Plan longer = planner.repeat(r, {}, 1, 0, {{{40, 40}, {40, 40}}}, pool);
