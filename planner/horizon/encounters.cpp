@@ -73,11 +73,13 @@ std::vector<Encounter> encounters(const PathRequest& request, const base::TimedP
 Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,
                  const base::HorizonSettings& settings) {
   base::HorizonSettings near = settings.for_brief();
-  const Vec3 soon = base::sample(unobstructed, near.horizon()).position;
   const bool is_led = !request.way.empty() && !request.visit;  // to a place that is passed
-  const bool stays = !is_led && (soon - request.target).norm() <= settings.near_target;
-  const bool brief = near.time < settings.time && !stays && !request.stuck;
-  const std::vector<Encounter> met = encounters(request, unobstructed, settings.horizon(), settings);
+  const Vec3 soon = base::sample(unobstructed, near.horizon()).position;
+  const bool stays = (soon - request.target).norm() <= settings.near_target;
+  const bool brief = near.time < settings.time && (is_led || (!stays && !request.stuck));
+  PathRequest meets = request;
+  if (is_led) meets.standing = {};
+  const std::vector<Encounter> met = encounters(meets, unobstructed, settings.horizon(), settings);
   if (met.empty()) return brief ? Extent::kBrief : Extent::kUsual;
   const geometry::PathFrame frame(request.position, request.target);
   const Vec3 centre = beside(unobstructed, frame, met.front());

@@ -46,7 +46,8 @@ enum class Extent {
 
 /// How far the way on asks to be looked at: the shortest horizon in which it leads on. kBrief: where it is met first, a
 /// place keeps clear so near by that the vehicle can be there within settings.brief_time, at one of the next waypoints'
-/// times; not where it is at the target by then, since it is to stay there, nor where it is stuck. kUsual: one within
+/// times; not where it is at the target by then, since it is to stay there, nor where it is stuck. Along
+/// PathRequest::way only what moves is met: the way leads past what stands, and on. kUsual: one within
 /// settings.lateral_range does. kFar: one within settings.far_range does. Closed all the way it is kUsual.
 /// `unobstructed` as for encounters(), up to the usual horizon. O(obstacles · (points + places)), allocates.
 Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed,

@@ -84,6 +84,8 @@ TEST(Extents, AreUsualOfWhoIsStuckOrToStayWhereItSoonIs) {
   PathRequest stuck = level_flight(tracks);
   stuck.stuck = true;
   EXPECT_EQ(extent_of(stuck, level(), {}), Extent::kUsual);
+  stuck.way = {stuck.target};  // led
+  EXPECT_EQ(extent_of(stuck, level(), {}), Extent::kBrief);
   PathRequest arrives = level_flight(tracks);
   arrives.target.x() = 5.5;  // at 3 m/s
   EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kUsual);
@@ -91,6 +93,20 @@ TEST(Extents, AreUsualOfWhoIsStuckOrToStayWhereItSoonIs) {
   EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kBrief);
   arrives.visit = true;
   EXPECT_EQ(extent_of(arrives, level(), {}), Extent::kUsual);
+}
+
+TEST(Extents, AreBriefAlongAWayThatIsKnownToLeadOn) {
+  const std::vector<base::Track> wall = wall_of(7.0);
+  PathRequest led = level_flight({});
+  led.standing = wall;
+  led.way = {{9, 8, kUp}, led.target};
+  EXPECT_EQ(extent_of(led, level(), {}), Extent::kBrief);
+  EXPECT_EQ(extent_of(led, level(), base::HorizonSettings{}.for_known_motion()), Extent::kUsual);
+  led.way.clear();
+  EXPECT_EQ(extent_of(led, level(), {}), Extent::kFar);
+  led = level_flight(wall);
+  led.way = {{9, 8, kUp}, led.target};
+  EXPECT_EQ(extent_of(led, level(), {}), Extent::kFar) << "what is not known to stand";
 }
 
 // Nobody flies far aside in a short horizon: to wait would be cheaper.
