@@ -2,6 +2,7 @@
 // Ways through what stands that no straight line with a few offsets is: dead ends, chicanes, doors, a spiral.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
