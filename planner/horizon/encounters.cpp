@@ -77,9 +77,8 @@ Extent extent_of(const PathRequest& request, const base::TimedPath& unobstructed
   const Vec3 soon = base::sample(unobstructed, near.horizon()).position;
   const bool stays = (soon - request.target).norm() <= settings.near_target;
   const bool brief = near.time < settings.time && (is_led || (!stays && !request.stuck));
-  PathRequest meets = request;
-  if (is_led) meets.standing = {};
-  const std::vector<Encounter> met = encounters(meets, unobstructed, settings.horizon(), settings);
+  const std::vector<Encounter> met =
+      encounters(is_led ? request.without_standing() : request, unobstructed, settings.horizon(), settings);
   if (met.empty()) return brief ? Extent::kBrief : Extent::kUsual;
   const geometry::PathFrame frame(request.position, request.target);
   const Vec3 centre = beside(unobstructed, frame, met.front());

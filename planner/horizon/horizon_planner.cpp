@@ -81,9 +81,7 @@ bool makes_room(const PathRequest& asked, const base::HorizonSettings& settings)
   if (!asked.stuck && !asked.holds) return false;
   if (taken(asked, asked.target, 0.0, settings) == Taken::kThroughout) return true;
   if (!asked.holds) return false;
-  PathRequest moving = asked;
-  moving.standing = {};
-  return taken(moving, asked.target, asked.margin, settings) == Taken::kAtTimes;
+  return taken(asked.without_standing(), asked.target, asked.margin, settings) == Taken::kAtTimes;
 }
 
 }  // namespace

@@ -43,6 +43,12 @@ struct PathRequest {
   /// One that keeps the margin of the settings and expects of tracks what they say.
   [[nodiscard]] static PathRequest with(const base::HorizonSettings& settings);
 
+  /// The same among what moves alone.
+  [[nodiscard]] PathRequest without_standing() const {
+    PathRequest moving = *this;
+    moving.standing = {};
+    return moving;
+  }
   /// Kept from what stands on top of the radii.
   [[nodiscard]] double margin_beside_standing() const { return std::min(margin, standing_margin); }
 };

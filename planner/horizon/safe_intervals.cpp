@@ -28,20 +28,17 @@ std::size_t SafeIntervalSearch::Mover::instants_until_near(double farther) const
 // What rests is placed once.
 void SafeIntervalSearch::place_obstacles(const PathRequest& request, double begin) {
   movers_.clear();
-  PathRequest moving = request;
-  moving.standing = {};
-  for_each_obstacle(moving, request.margin, [&](const auto& obstacle) {
+  for_each_obstacle(request.without_standing(), request.margin, [&](const auto& obstacle) {
     Mover mover;
     mover.body = obstacle.body.later(begin);
     mover.wanted = obstacle.wanted;
     mover.kept = obstacle.kept;
-    mover.rests = obstacle.body.yaw_rate == 0.0 && obstacle.until == base::kInfinity;
     for (int i = 0; i < kInstants && begin + i * kInstant <= obstacle.until; ++i) {
-      const Vec3 before = mover.where.empty() ? obstacle.position(begin) : mover.where.back();
-      mover.where.push_back(obstacle.position(begin + i * kInstant));
-      mover.farthest = std::max(mover.farthest, (mover.where.back() - before).norm());
-      mover.rests = mover.rests && mover.where.back() == mover.where.front();
+      const Vec3 there = obstacle.position(begin + i * kInstant);
+      if (!mover.where.empty()) mover.farthest = std::max(mover.farthest, (there - mover.where.back()).norm());
+      mover.where.push_back(there);
     }
+    mover.rests = obstacle.body.yaw_rate == 0.0 && obstacle.until == base::kInfinity && mover.farthest == 0.0;
     if (mover.where.empty()) return;
     mover.box = {mover.where.front(), mover.where.front()};
     for (const Vec3& at : mover.where) mover.box = {mover.box.min.cwiseMin(at), mover.box.max.cwiseMax(at)};

@@ -2,7 +2,6 @@
 // Ways through what stands that no straight line with a few offsets is: dead ends, chicanes, doors, a spiral.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -88,6 +87,9 @@ std::vector<GuidedWorld> guided_worlds() {
   worlds.push_back(world("spiral", spiral(), {10, 0, 1.5}));
   worlds.back().scenario.world->max.z() = 4;
   worlds.back().scenario.world->min.y() = -14;
+  // Plans that look farther than the bend, which is hardly wider than the vehicle with its margin, find nothing better
+  // than to stay.
+  worlds.back().scenario.time_limit = 30;
   // What comes fills the corridor: into the recess before it is there, until it is past.
   worlds.push_back(world("piston", {box({10, -1.65, 4}, {28, 0.3, 8}), box({-0.6, 1.65, 4}, {6.8, 0.3, 8}),
                                     box({14.6, 1.65, 4}, {18.8, 0.3, 8}), box({4, 4.15, 4}, {3, 0.3, 8}),
@@ -127,16 +129,6 @@ class GuidedWorlds : public testing::TestWithParam<GuidedWorld> {};
 
 TEST_P(GuidedWorlds, AreFlownThrough) {
   (void)expect_flown_through(GetParam().scenario);
-}
-
-// Along a bend that is hardly wider than the vehicle with its margin what is looked for is the next two metres: plans
-// that look farther find nothing better than to stay, and took 50 s or for ever.
-TEST(GuidedWorlds, ANarrowBendIsFlownWithoutAStop) {
-  std::vector<GuidedWorld> worlds = guided_worlds();
-  const auto bend =
-      std::find_if(worlds.begin(), worlds.end(), [](const auto& w) { return w.scenario.name == "spiral"; });
-  ASSERT_NE(bend, worlds.end());
-  EXPECT_LT(expect_flown_through(bend->scenario).flight.flight_time, 30.0);
 }
 
 TEST_P(GuidedWorlds, ArePlannedThrough) {
