@@ -74,7 +74,7 @@ struct HorizonSettings {
   double brief_time = 2.0;           ///< looked ahead where the way leads on near by
   double far_time = 9.0;             ///< looked ahead where nothing leads on within lateral_range
   double far_range = 12.0;           ///< how far waypoints may leave the straight line then
-  double acceleration_share = 0.65;  ///< of the vehicle's limit that plans use; the rest is for tracking them
+  double acceleration_share = 0.5;   ///< of the vehicle's limit that plans use; the rest is for tracking them
   double emergency_share = 0.9;      ///< the same where nothing else keeps the margin
   double acceleration_limit = 10.0;  ///< as which a higher limit counts, m/s²: a tilt of 45 degrees
   double braking = 2.0;              ///< deceleration planned towards a stop, m/s²

@@ -444,7 +444,7 @@ TEST(Companion, NoSpeedIsAskedForThatTheDragDoesNotLeave) {
     loop.airborne().fly();
     return loop.planner.jobs.front().request.vehicle.max_speed;  // before it has learned anything
   };
-  EXPECT_NEAR(asked(1.0, 12.0), 6.75, 1e-9);  // 10 m/s² of a tilt of 45 degrees, less the 3.25 of plans
+  EXPECT_NEAR(asked(1.0, 12.0), 7.5, 1e-9);  // 10 m/s² of a tilt of 45 degrees, less the 2.5 of plans
   EXPECT_EQ(asked(1.0, 6.0), 6.0);
   EXPECT_EQ(asked(0.0, 12.0), 12.0);
   EXPECT_EQ(asked(2.0, 12.0), 5.0);  // what the mission wants is asked for
